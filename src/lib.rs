@@ -1,0 +1,6 @@
+//! etalon: a physically based spectral renderer, and the instrument that proves its pictures
+//! right.
+
+pub mod math;
+pub mod scene;
+pub mod spectrum;

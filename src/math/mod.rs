@@ -1,0 +1,3 @@
+//! Numbers: transforms, extended precision, lanes. Knows nobody else.
+
+pub mod affine;
