@@ -2,5 +2,7 @@
 //! right.
 
 pub mod math;
+pub mod sample;
 pub mod scene;
+pub mod shape;
 pub mod spectrum;

@@ -1,0 +1,2 @@
+//! Shapes.
+pub mod lanes;
