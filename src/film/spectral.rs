@@ -7,9 +7,8 @@
 
 use super::{Attribute, Channel, Picture};
 
-/// The unit of the bins: spectral radiance integrated over the bin's sensitivity and divided by
-/// its integral would carry nm⁻¹; the layout knows only the unit below, per nm being implied by
-/// the wavelengths of the channel names.
+/// The unit as the layout's own library and pbrt-v4 write it. The values are spectral radiance,
+/// a mean over the bin's wavelengths; "per nm" is implied by the channel names.
 const EMISSIVE_UNITS: &str = "W.m^-2.sr^-1";
 
 /// The name of the channel of unpolarised radiance at `nm` nanometres: `S0.550,000000nm`.
@@ -35,7 +34,7 @@ pub struct Bin {
     /// Relative sensitivity: wavelengths in nm and values, linear between them. Left empty, the
     /// bin is the box between the midpoints to its neighbours.
     pub sensitivity: Vec<(f64, f64)>,
-    /// Radiance, one value a pixel.
+    /// Spectral radiance, W·m⁻²·sr⁻¹·nm⁻¹, one value a pixel.
     pub values: Vec<f32>,
 }
 
