@@ -75,7 +75,14 @@ impl Provenance {
         list.count("nanCount", self.nan_count);
         list.double("standardError", self.standard_error);
         list.double("energyCutByMaxDepth", self.energy_cut);
-        list.text("lightsLeftOut", &self.lights_left_out.join(", "));
+        // Some readers drop empty texts, and "none" is an answer.
+        let none = self.lights_left_out.is_empty();
+        let lights = if none {
+            "none".to_owned()
+        } else {
+            self.lights_left_out.join(", ")
+        };
+        list.text("lightsLeftOut", &lights);
         list.0
     }
 }

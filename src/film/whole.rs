@@ -2,7 +2,8 @@
 //!
 //! The content goes to a temporary file in the target's own directory (only there is a rename
 //! atomic), is brought to the disk, and takes the target's name at once. Whatever fails before
-//! leaves an existing file as it was, and nothing else behind.
+//! leaves an existing file as it was, and nothing else behind; only a process killed while it
+//! writes leaves its `.etalon-….part`.
 
 use std::fs::{self, File, Metadata, OpenOptions, Permissions};
 use std::io::{self, Seek};
