@@ -24,3 +24,4 @@ pub enum RefractiveIndex {
         k: Spectrum,
     },
 }
+
