@@ -1,6 +1,7 @@
 //! etalon: a physically based spectral renderer, and the instrument that proves its pictures
 //! right.
 
+pub mod film;
 pub mod math;
 pub mod sample;
 pub mod scene;
