@@ -1,2 +1,4 @@
 //! The test suite, one binary.
+
 mod film_files;
+mod spectrum;
