@@ -3,4 +3,5 @@
 
 pub mod math;
 pub mod scene;
+pub mod shape;
 pub mod spectrum;

@@ -1,1 +1,4 @@
 //! The test suite, one binary.
+
+mod oracle_primitives;
+mod shape_ladder;

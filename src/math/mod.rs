@@ -1,3 +1,6 @@
 //! Numbers: transforms, extended precision, lanes. Knows nobody else.
 
 pub mod affine;
+pub mod double_double;
+pub mod exact;
+pub mod number;
