@@ -1,4 +1,6 @@
 //! The test suite, one binary.
 
 mod film_files;
+mod oracle_primitives;
+mod shape_ladder;
 mod spectrum;
