@@ -1,7 +1,10 @@
 //! etalon: a physically based spectral renderer, and the instrument that proves its pictures
 //! right.
 
+pub mod camera;
 pub mod film;
+pub mod integrate;
+pub mod light;
 pub mod math;
 pub mod sample;
 pub mod scene;

@@ -20,6 +20,7 @@ pub mod plane;
 pub mod rectangle;
 pub mod sphere;
 mod surd;
+pub mod resolve;
 mod value;
 
 use glam::DVec3;

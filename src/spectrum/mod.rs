@@ -6,6 +6,7 @@
 
 pub mod blackbody;
 pub mod cells;
+pub mod grid;
 pub mod glass;
 pub mod illuminant;
 pub mod ior;

@@ -15,7 +15,7 @@ mod sphere;
 use crate::math::affine::Affine;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::vec3::{Rows, Vec3};
-use crate::scene::Shape;
+use crate::shape::ShapeKind;
 
 pub mod implicit;
 
@@ -57,43 +57,11 @@ pub struct Span<L: Lanes> {
     pub miss: L::Mask,
 }
 
-/// A canonical shape that lanes can intersect.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Canonical {
-    /// x² + y² + z² = 1.
-    Sphere,
-    /// [-1, 1]³.
-    Cube,
-    /// x² + y² = 1, |z| ≤ 1, capped.
-    Cylinder,
-    /// z = 0, x² + y² ≤ 1.
-    Disk,
-    /// z = 0, |x|, |y| ≤ 1.
-    Rectangle,
-    /// z = 0.
-    Plane,
-}
-
-impl Canonical {
-    /// The canonical shape of a description; `None` for implicit surfaces.
-    pub fn of(shape: &Shape) -> Option<Self> {
-        Some(match shape {
-            Shape::Sphere => Self::Sphere,
-            Shape::Cube => Self::Cube,
-            Shape::Cylinder => Self::Cylinder,
-            Shape::Disk => Self::Disk,
-            Shape::Rectangle => Self::Rectangle,
-            Shape::Plane => Self::Plane,
-            Shape::Implicit(_) => return None,
-        })
-    }
-}
-
 /// A placed shape as lanes use it.
 #[derive(Debug, Clone, Copy)]
 pub struct LaneShape<T> {
     /// Which shape; implicit surfaces are intersected elsewhere and place nothing here.
-    pub canonical: Option<Canonical>,
+    pub kind: Option<ShapeKind>,
     /// World (about the camera) → canonical coordinates.
     pub inverse: Rows<T>,
     /// Canonical coordinates → world.
@@ -106,14 +74,14 @@ pub struct LaneShape<T> {
 
 impl<T: Scalar> LaneShape<T> {
     /// Rounds a placement whose inverse is given.
-    pub fn new(canonical: Option<Canonical>, forward: &Affine, inverse: &Affine) -> Self {
+    pub fn new(kind: Option<ShapeKind>, forward: &Affine, inverse: &Affine) -> Self {
         let largest = |f: &dyn Fn(&[f64; 4]) -> f64| inverse.rows.iter().map(f).fold(0.0, f64::max);
         let row_sum = largest(&|r| r[0].abs() + r[1].abs() + r[2].abs());
         let offset = largest(&|r| r[3].abs());
         // One more unit roundoff in the bounds pays for rounding the bounds themselves.
         let unit = 6.5 * T::ROUNDOFF;
         Self {
-            canonical,
+            kind,
             inverse: Rows::from_f64(&inverse.rows),
             forward: Rows::from_f64(&forward.rows),
             direction_error: T::from_f64(unit * row_sum),
@@ -131,13 +99,13 @@ impl<T: Scalar> LaneShape<T> {
     /// Where the lines meet the shape.
     #[inline(always)]
     pub fn span<L: Lanes<Scalar = T>>(&self, l: L, ray: &LaneRay<L>) -> Span<L> {
-        match self.canonical {
-            Some(Canonical::Sphere) => sphere::span(l, self, ray),
-            Some(Canonical::Cube) => cube::span(l, self, ray),
-            Some(Canonical::Cylinder) => cylinder::span(l, self, ray),
-            Some(Canonical::Disk) => flat::span::<L, flat::Disk>(l, self, ray),
-            Some(Canonical::Rectangle) => flat::span::<L, flat::Rectangle>(l, self, ray),
-            Some(Canonical::Plane) => flat::span::<L, flat::Plane>(l, self, ray),
+        match self.kind {
+            Some(ShapeKind::Sphere) => sphere::span(l, self, ray),
+            Some(ShapeKind::Cube) => cube::span(l, self, ray),
+            Some(ShapeKind::Cylinder) => cylinder::span(l, self, ray),
+            Some(ShapeKind::Disk) => flat::span::<L, flat::Disk>(l, self, ray),
+            Some(ShapeKind::Rectangle) => flat::span::<L, flat::Rectangle>(l, self, ray),
+            Some(ShapeKind::Plane) => flat::span::<L, flat::Plane>(l, self, ray),
             None => Span {
                 near: l.real(0.0),
                 far: l.real(0.0),
@@ -156,11 +124,11 @@ impl<T: Scalar> LaneShape<T> {
         l: L,
         local: Vec3<L::Real>,
     ) -> (Vec3<L::Real>, Vec3<L::Real>) {
-        match self.canonical {
-            Some(Canonical::Sphere) => sphere::surface(l, local),
-            Some(Canonical::Cube) => cube::surface(l, local),
-            Some(Canonical::Cylinder) => cylinder::surface(l, local),
-            Some(Canonical::Disk | Canonical::Rectangle | Canonical::Plane) | None => {
+        match self.kind {
+            Some(ShapeKind::Sphere) => sphere::surface(l, local),
+            Some(ShapeKind::Cube) => cube::surface(l, local),
+            Some(ShapeKind::Cylinder) => cylinder::surface(l, local),
+            Some(ShapeKind::Disk | ShapeKind::Rectangle | ShapeKind::Plane) | None => {
                 let zero = l.real(0.0);
                 (
                     Vec3::new(local.x, local.y, zero),

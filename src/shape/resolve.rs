@@ -1,0 +1,90 @@
+//! What lanes cannot decide: whole rays taken to the certified ladder.
+
+use glam::DVec3;
+
+use super::list::{Query, nearest, occluded};
+use super::{Placed, Ray, Start, Tally};
+
+/// The certified shapes of a scene, by their index among all objects.
+#[derive(Debug, Clone, Default)]
+pub struct Resolver {
+    placed: Vec<Placed>,
+    objects: Vec<u32>,
+    priorities: Vec<u8>,
+}
+
+/// What a ray's start knows: it left this object, and to which side.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Departure {
+    /// Index of the object; `u32::MAX` for none.
+    pub object: u32,
+    /// Whether the ray goes into the object.
+    pub inward: bool,
+}
+
+impl Resolver {
+    /// Adds object `object`; at equal t the lower priority wins.
+    pub fn push(&mut self, object: u32, placed: Placed, priority: u8) {
+        self.placed.push(placed);
+        self.objects.push(object);
+        self.priorities.push(priority);
+    }
+
+    /// The closest hit: its parameter and object.
+    pub fn nearest(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        departure: Departure,
+        tally: &mut Tally,
+    ) -> Option<(f64, u32)> {
+        let query = Query {
+            ray: Ray { origin, direction },
+            t_min: 0.0,
+            t_max: f64::INFINITY,
+        };
+        let (index, hit) = nearest(
+            &self.placed,
+            &query,
+            |i| self.start(i, departure),
+            |i| self.priorities[i],
+            tally,
+        )?;
+        Some((hit.t, self.objects[index]))
+    }
+
+    /// Whether anything but `except` lies strictly between the origin and `t_max`.
+    pub fn occluded(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        t_max: f64,
+        departure: Departure,
+        except: u32,
+        tally: &mut Tally,
+    ) -> bool {
+        let query = Query {
+            ray: Ray { origin, direction },
+            t_min: 0.0,
+            t_max,
+        };
+        let start = |i: usize| {
+            if self.objects[i] == except {
+                Start::Excluded
+            } else {
+                self.start(i, departure)
+            }
+        };
+        occluded(&self.placed, &query, start, tally)
+    }
+
+    fn start(&self, index: usize, departure: Departure) -> Start {
+        if self.objects[index] != departure.object {
+            Start::Free
+        } else if departure.inward {
+            Start::OnSurfaceInward
+        } else {
+            Start::Excluded
+        }
+    }
+}
