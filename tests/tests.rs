@@ -2,3 +2,4 @@
 
 mod oracle_primitives;
 mod shape_ladder;
+mod shape_list;
