@@ -1,1 +1,379 @@
-//! x
+//! Every rung of the ladder against the exact one, on rays made to be nasty; odd input.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "the tests' own transforms are invertible"
+)]
+
+use std::cmp::Ordering;
+
+use etalon::math::affine::Affine;
+use etalon::math::double_double::DoubleDouble;
+use etalon::math::exact::Exact;
+use etalon::math::number::{Bounded, Number};
+use etalon::shape::ladder::{Question, ScaledRay};
+use etalon::shape::question::{First, Limits, Through};
+use etalon::shape::{Placed, Ray, ShapeKind, SingularMatrix, Start, Tally};
+use glam::{DMat3, DQuat, DVec3};
+use rand::{Rng, RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+/// Every shape.
+pub const KINDS: [ShapeKind; 6] = [
+    ShapeKind::Sphere,
+    ShapeKind::Cube,
+    ShapeKind::Cylinder,
+    ShapeKind::Disk,
+    ShapeKind::Rectangle,
+    ShapeKind::Plane,
+];
+
+fn signed(rng: &mut impl Rng) -> f64 {
+    rng.random_range(-1.0..1.0)
+}
+
+/// Uniform in [-1, 1)³.
+pub fn cubed(rng: &mut impl Rng) -> DVec3 {
+    DVec3::new(signed(rng), signed(rng), signed(rng))
+}
+
+/// 10^x for x drawn from the range.
+pub fn decade(rng: &mut impl Rng, from: f64, to: f64) -> f64 {
+    libm::exp10(rng.random_range(from..to))
+}
+
+fn matrix(rng: &mut impl Rng) -> Affine {
+    let linear = match rng.random_range(0..4) {
+        0 => DMat3::IDENTITY,
+        1 => {
+            let shear = DVec3::new(1.0, decade(rng, -8.0, 0.0), 0.0);
+            DMat3::from_cols(DVec3::X, shear, -DVec3::Z)
+        }
+        _ => {
+            let mut rotation = || {
+                let q = DQuat::from_xyzw(signed(rng), signed(rng), signed(rng), 1.5);
+                DMat3::from_quat(q.normalize())
+            };
+            let (left, right) = (rotation(), rotation());
+            let stretch = DVec3::new(1.0, decade(rng, -8.0, 0.0), -decade(rng, -4.0, 0.0));
+            left * DMat3::from_diagonal(stretch) * right
+        }
+    };
+    let scale = *[1.0, 1.0, 1e-6, 1e12, 0.5]
+        .get(rng.random_range(0..5))
+        .unwrap();
+    let shift = cubed(rng) * scale * *[0.0, 1.0, 1e4].get(rng.random_range(0..3)).unwrap();
+    let m = (linear * scale).to_cols_array_2d();
+    Affine {
+        rows: [0, 1, 2].map(|i| [m[0][i], m[1][i], m[2][i], shift[i]]),
+    }
+}
+
+/// A canonical point where answers change: a corner, an edge, a rim, a silhouette, a face.
+fn critical_point(rng: &mut impl Rng) -> DVec3 {
+    let mut p = cubed(rng);
+    match rng.random_range(0..3) {
+        0 => {
+            for i in 0..3 {
+                if rng.random_bool(0.6) {
+                    p[i] = p[i].signum();
+                }
+            }
+            p
+        }
+        1 => p.normalize(),
+        _ => {
+            let round = p.truncate().normalize();
+            round.extend(*[-1.0, 0.0, 1.0, p.z].get(rng.random_range(0..4)).unwrap())
+        }
+    }
+}
+
+/// A shape scaled, then shifted.
+pub fn placed(kind: ShapeKind, scale: f64, shift: DVec3) -> Placed {
+    let matrix = Affine::translate(shift).after(&Affine::scale(DVec3::splat(scale)));
+    Placed::new(kind, &matrix).unwrap()
+}
+
+fn nasty_ray(rng: &mut impl Rng, to_world: &Affine) -> (Ray, f64) {
+    let p = critical_point(rng);
+    let epsilon = match rng.random_range(0..4) {
+        0 => 0.0,
+        _ => decade(rng, -17.0, -1.0),
+    };
+    let aim = p + cubed(rng) * epsilon;
+    let mut local = match rng.random_range(0..4) {
+        // Tangent to whatever is round here.
+        0 => p.cross(cubed(rng)),
+        1 => DVec3::AXES[rng.random_range(0..3)],
+        2 => DVec3::new(p.y, -p.x, 0.0),
+        _ => cubed(rng),
+    };
+    if rng.random_bool(0.1) {
+        local[rng.random_range(0..3)] = *[5e-324, -5e-324, -0.0, 1e-310, 1e-200]
+            .get(rng.random_range(0..5))
+            .unwrap();
+    }
+    let away = match rng.random_range(0..4) {
+        0 => 0.0,
+        1 => 3.0,
+        2 => signed(rng),
+        _ => decade(rng, 0.0, 8.0),
+    };
+    let origin = to_world.point(aim - local * away);
+    let mut direction = to_world.vector(local);
+    if direction == DVec3::ZERO {
+        direction = DVec3::X;
+    }
+    let units = *[1.0, 1.0, 1.0, 1e200, 1e-290]
+        .get(rng.random_range(0..5))
+        .unwrap();
+    let direction = direction * units;
+    let t_min = *[0.0, 0.0, 5.960_464_477_539_063e-8, 1.0]
+        .get(rng.random_range(0..4))
+        .unwrap();
+    (Ray { origin, direction }, t_min)
+}
+
+#[derive(Default)]
+struct Decided {
+    double: usize,
+    double_double: usize,
+    asked: usize,
+    hits: usize,
+}
+
+impl Decided {
+    fn ask<Q>(&mut self, placed: &Placed, ray: &ScaledRay, question: &Q, what: &str)
+    where
+        Q: Question<Answer: PartialEq + std::fmt::Debug>,
+    {
+        let ladder = placed.ladder();
+        let truth = question.ask(&ladder.exact.local(ray));
+        assert!(truth.is_some(), "exact numbers must decide: {what}");
+        let double = question.ask(&ladder.double.local(ray));
+        let double_double = question.ask(&ladder.double_double.local(ray));
+        assert!(double.is_none() || double == truth, "f64: {what}");
+        assert!(
+            double_double.is_none() || double_double == truth,
+            "dd: {what}"
+        );
+        self.asked += 1;
+        self.double += usize::from(double.is_some());
+        self.double_double += usize::from(double_double.is_some());
+    }
+}
+
+#[test]
+fn lower_rungs_never_contradict_the_exact_one() {
+    let mut rng = Pcg64Mcg::seed_from_u64(0x001a_dde5);
+    let mut decided = Decided::default();
+    for round in 0..12_000 {
+        let kind = KINDS[round % KINDS.len()];
+        let to_world = matrix(&mut rng);
+        let placed = Placed::new(kind, &to_world).unwrap();
+        let (ray, t_min) = nasty_ray(&mut rng, &to_world);
+        if !ray.is_valid() {
+            continue;
+        }
+        let what = format!("{kind:?} {to_world:?} {ray:?} {t_min}");
+        let scaled = ScaledRay::new(&ray);
+        decided.ask(&placed, &scaled, &Through(kind), &what);
+        for start in [Start::Free, Start::OnSurfaceInward] {
+            let limits = &Limits::new(t_min, f64::INFINITY).unwrap();
+            let (ray, limits) = (&scaled, limits);
+            let first = First {
+                kind,
+                ray,
+                limits,
+                start,
+            };
+            decided.ask(&placed, &scaled, &first, &what);
+        }
+        let mut tally = Tally::default();
+        if let Some(hit) = placed.first_hit(&ray, t_min, Start::Free, &mut tally) {
+            decided.hits += 1;
+            let on_surface = hit.local.is_finite() && hit.t >= t_min;
+            let unit = (hit.normal.length() - 1.0).abs() < 4.0 * f64::EPSILON;
+            assert!(
+                on_surface && unit && hit.point.is_finite(),
+                "{hit:?} {what}"
+            );
+        }
+    }
+    let Decided {
+        double,
+        double_double,
+        asked,
+        hits,
+    } = decided;
+    println!("{asked} asked: {double} in f64, {double_double} in double-double, {hits} hits");
+    // The test has teeth only if every rung is reached and left often, and both answers occur.
+    assert!(double > asked / 10 && double_double > double + asked / 10);
+    assert!(double_double < asked - asked / 20);
+    assert!(hits > 2_000);
+}
+
+/// Evaluates random expressions in N and exactly; the difference must never have a sign.
+fn check_enclosures<N: Number>(seed: u64) {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let consistent = |difference: N, what: &str| {
+        let sign = difference.sign();
+        assert!(
+            matches!(sign, None | Some(Ordering::Equal)),
+            "{what}: {sign:?}"
+        );
+    };
+    for _ in 0..2_000 {
+        let mut start = || {
+            let size = if rng.random_bool(0.5) { 1.0 } else { 120.0 };
+            signed(&mut rng) * decade(&mut rng, -size, size)
+        };
+        let pool: Vec<f64> = (0..4).map(|_| start()).collect();
+        let mut value = N::of(pool[0]);
+        let mut truth = Exact::of(pool[0]);
+        for _ in 0..8 {
+            let x = pool[rng.random_range(0..4)];
+            let (n, e) = (N::of(x), Exact::of(x));
+            (value, truth) = match rng.random_range(0..4) {
+                0 => (value.plus(&n), truth.plus(&e)),
+                1 => (value.minus(&n), truth.minus(&e)),
+                2 => (n.times(&value), e.times(&truth)),
+                _ => (value.minus(&value.times(&n)), truth.minus(&truth.times(&e))),
+            };
+            consistent(value.minus(&N::enclosing(&truth)), "sum and product");
+            let quotient = value.divided_by(&n);
+            consistent(quotient.times(&n).minus(&N::enclosing(&truth)), "quotient");
+            let root = value.squared().plus(&n.squared()).square_root();
+            let square = truth.squared().plus(&e.squared());
+            consistent(root.squared().minus(&N::enclosing(&square)), "root");
+        }
+    }
+}
+
+#[test]
+fn error_bounds_hold_over_the_whole_range_of_exponents() {
+    check_enclosures::<Bounded>(1);
+    check_enclosures::<DoubleDouble>(2);
+}
+
+#[test]
+fn exact_numbers_round_to_nearest() {
+    let third = Exact::of(1.0).divided_by(&Exact::of(3.0));
+    assert_eq!(third.to_f64(), 1.0 / 3.0);
+    assert_eq!(
+        Exact::of(2.0).square_root().to_f64(),
+        std::f64::consts::SQRT_2
+    );
+    // A tie goes to even, a tie with something behind it goes up.
+    let tie = Exact::of(1.0).plus(&Exact::of(f64::EPSILON / 2.0));
+    assert_eq!(tie.to_f64(), 1.0);
+    let above = tie.plus(&Exact::of(5e-324));
+    assert_eq!(above.to_f64(), 1.0 + f64::EPSILON);
+    assert_eq!(Exact::of(-5e-324).to_f64(), -5e-324);
+    assert_eq!(Exact::of(f64::MAX).to_f64(), f64::MAX);
+    assert_eq!(Exact::of(f64::MAX).squared().to_f64(), f64::INFINITY);
+}
+
+#[test]
+fn a_start_on_the_surface_counts_the_far_crossing_only() {
+    let mut rng = Pcg64Mcg::seed_from_u64(5);
+    for round in 0..600 {
+        let kind = KINDS[round % 3];
+        let to_world = matrix(&mut rng);
+        let body = Placed::new(kind, &to_world).unwrap();
+        let aim = to_world.point(0.5 * cubed(&mut rng));
+        let origin = to_world.point(5.0 * cubed(&mut rng).normalize());
+        let mut tally = Tally::default();
+        let ray = Ray {
+            origin,
+            direction: aim - origin,
+        };
+        let Some(entry) = body.first_hit(&ray, 0.0, Start::Free, &mut tally) else {
+            continue;
+        };
+        // From the rounded point of entry on: the exit it would have had, up to that rounding.
+        let inward = Ray {
+            origin: entry.point,
+            ..ray
+        };
+        let exit = body.first_hit(&inward, 0.0, Start::OnSurfaceInward, &mut tally);
+        let both = body.crossings(&ray, &mut tally).unwrap();
+        assert_eq!(both.near.t, entry.t);
+        if let Some(exit) = exit {
+            assert!(!exit.front && both.far.t >= both.near.t);
+        }
+        assert!(
+            body.first_hit(&inward, 0.0, Start::Excluded, &mut tally)
+                .is_none()
+        );
+    }
+    let disk = placed(ShapeKind::Disk, 1.0, DVec3::ZERO);
+    let ray = Ray {
+        origin: DVec3::Z,
+        direction: -DVec3::Z,
+    };
+    assert!(
+        disk.first_hit(&ray, 0.0, Start::OnSurfaceInward, &mut Tally::default())
+            .is_none()
+    );
+    assert!(
+        disk.first_hit(&ray, 0.0, Start::Free, &mut Tally::default())
+            .is_some_and(|h| h.front)
+    );
+}
+
+#[test]
+fn odd_input_is_refused_quietly() {
+    let singular = Affine {
+        rows: [
+            [1.0, 2.0, 3.0, 0.0],
+            [2.0, 4.0, 6.0, 0.0],
+            [0.1, 0.2, 0.7, 0.0],
+        ],
+    };
+    assert_eq!(
+        Placed::new(ShapeKind::Cube, &singular).err(),
+        Some(SingularMatrix)
+    );
+    // One unit in the last place off a singular matrix is not singular.
+    let mut barely = singular;
+    barely.rows[1][1] = 4.0 + 4.0 * f64::EPSILON;
+    assert!(Placed::new(ShapeKind::Cube, &barely).is_ok());
+    barely.rows[1][1] = f64::NAN;
+    assert!(Placed::new(ShapeKind::Cube, &barely).is_err());
+    let extreme = [
+        0.0,
+        5e-324,
+        f64::MIN_POSITIVE,
+        1e-160,
+        1.0,
+        1e160,
+        f64::MAX,
+        f64::NAN,
+        f64::INFINITY,
+    ];
+    for kind in KINDS {
+        let scales = [1e-300, 1e-6, 1.0, 1e300];
+        for scale in scales {
+            let body = placed(kind, scale, DVec3::ONE);
+            for a in extreme {
+                for b in extreme {
+                    let ray = Ray {
+                        origin: DVec3::new(a, -b, 0.5),
+                        direction: DVec3::new(-a, b, 1e-3 * b),
+                    };
+                    for t_min in [0.0, a, -b] {
+                        let hit = body.first_hit(&ray, t_min, Start::Free, &mut Tally::default());
+                        if let Some(hit) = hit {
+                            let finite = hit.t.is_finite()
+                                && hit.point.is_finite()
+                                && hit.normal.is_finite();
+                            assert!(finite && hit.t >= t_min, "{hit:?}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -3,4 +3,5 @@
 mod film_files;
 mod oracle_primitives;
 mod shape_ladder;
+mod shape_list;
 mod spectrum;

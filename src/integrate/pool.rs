@@ -58,6 +58,8 @@ pub mod flags {
 #[derive(Debug)]
 pub struct Pool<T, const C: usize> {
     capacity: usize,
+    /// Lanes of a packet.
+    lanes: usize,
     /// Paths in the pool, ended ones included.
     pub length: usize,
     /// Paths still going.
@@ -106,11 +108,14 @@ impl<T: Copy + Default, const C: usize> Results<T, C> {
 }
 
 impl<T: Copy + Default, const C: usize> Pool<T, C> {
-    /// An empty pool for `capacity` paths, a multiple of the lane count.
-    pub fn new(capacity: usize) -> Self {
+    /// An empty pool for `paths` paths.
+    pub fn new(paths: usize) -> Self {
         let real_fields = PLAIN_REALS + SPECTRAL * C;
+        // A packet may be stored at any place, so it may reach past the last path.
+        let capacity = paths + 16;
         Self {
             capacity,
+            lanes: 1,
             length: 0,
             alive: 0,
             reals: vec![T::default(); real_fields * capacity],
@@ -119,9 +124,36 @@ impl<T: Copy + Default, const C: usize> Pool<T, C> {
         }
     }
 
-    /// Free places at the end.
-    pub fn free(&self) -> usize {
-        self.capacity - self.length
+    /// Declares every path in the pool alive.
+    pub fn all_alive<L: Lanes>(&mut self) {
+        self.alive = self.length;
+        let mut left = self.length;
+        for mask in &mut self.masks {
+            let here = left.min(L::COUNT);
+            *mask = ((1u64 << here) - 1) as u32;
+            left -= here;
+            if here == 0 {
+                break;
+            }
+        }
+        self.lanes = L::COUNT;
+    }
+
+    /// The places of paths that have ended since the last compaction.
+    pub fn ended(&self) -> impl Iterator<Item = usize> + '_ {
+        let (lanes, length) = (self.lanes, self.length);
+        (0..length).step_by(lanes).enumerate().flat_map(move |(packet, at)| {
+            let here = (length - at).min(lanes);
+            let all = ((1u64 << here) - 1) as u32;
+            let mut bits = all & !self.masks[packet];
+            std::iter::from_fn(move || {
+                (bits != 0).then(|| {
+                    let i = bits.trailing_zeros() as usize;
+                    bits &= bits - 1;
+                    at + i
+                })
+            })
+        })
     }
 
     #[inline(always)]
@@ -233,12 +265,6 @@ impl<T: Copy + Default, const C: usize> Pool<T, C> {
         }
         self.length = to;
         self.alive = to;
-        let mut left = to;
-        for mask in &mut self.masks {
-            let here = left.min(L::COUNT);
-            *mask = ((1u64 << here) - 1) as u32;
-            left -= here;
-        }
     }
 }
 

@@ -29,8 +29,10 @@ pub enum Slot {
     Bsdf = 4,
     /// Which light; which lobe of the surface.
     Choice = 5,
-    /// Russian roulette; whether a path goes on beyond `max_depth`.
+    /// Russian roulette.
     Roulette = 6,
+    /// Whether a path goes on beyond `max_depth`.
+    Beyond = 7,
 }
 
 impl Slot {

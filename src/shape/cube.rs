@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::line::{Crossing, LocalRay, Span};
+use super::line::{Crossing, Fraction, LocalRay, Span};
 use crate::math::number::Number;
 
 /// Where the line enters and leaves the slab |coordinate| ≤ 1.
@@ -21,7 +21,7 @@ pub fn slab<N: Number>(ray: &LocalRay<N>, axis: usize) -> Option<Slab> {
         Ordering::Greater => true,
         Ordering::Less => false,
         Ordering::Equal => {
-            let start = super::line::Fraction::whole(N::of(0.0));
+            let start = Fraction::whole(N::of(0.0));
             return Some(match ray.within(axis, &start)? {
                 true => Slab::Inside,
                 false => Slab::Outside,
@@ -34,6 +34,24 @@ pub fn slab<N: Number>(ray: &LocalRay<N>, axis: usize) -> Option<Slab> {
     }))
 }
 
+/// The part of a span that lies between the faces of a slab, if any.
+pub fn cut<N: Number>(ray: &LocalRay<N>, mut span: Span, faces: &Span) -> Option<Option<Span>> {
+    let enters = faces.near.fraction(ray)?;
+    let leaves = faces.far.fraction(ray)?;
+    if span.near.compare(ray, &leaves)? == Ordering::Greater
+        || span.far.compare(ray, &enters)? == Ordering::Less
+    {
+        return Some(None);
+    }
+    if span.near.compare(ray, &enters)? == Ordering::Less {
+        span.near = faces.near;
+    }
+    if span.far.compare(ray, &leaves)? == Ordering::Greater {
+        span.far = faces.far;
+    }
+    Some(Some(span))
+}
+
 /// The last entry must not come after the first exit.
 pub fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
     let mut span: Option<Span> = None;
@@ -43,23 +61,13 @@ pub fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
             Slab::Inside => continue,
             Slab::Outside => return Some(None),
         };
-        let Some(current) = &mut span else {
-            span = Some(next);
-            continue;
+        span = match span {
+            None => Some(next),
+            Some(current) => match cut(ray, current, &next)? {
+                None => return Some(None),
+                shorter => shorter,
+            },
         };
-        let enters = next.near.fraction(ray)?;
-        let leaves = next.far.fraction(ray)?;
-        if current.near.compare(ray, &leaves)? == Ordering::Greater
-            || current.far.compare(ray, &enters)? == Ordering::Less
-        {
-            return Some(None);
-        }
-        if current.near.compare(ray, &enters)? == Ordering::Less {
-            current.near = next.near;
-        }
-        if current.far.compare(ray, &leaves)? == Ordering::Greater {
-            current.far = next.far;
-        }
     }
     Some(span)
 }

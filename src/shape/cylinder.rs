@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::cube::{Slab, slab};
+use super::cube::{Slab, cut, slab};
 use super::line::{Crossing, Fraction, LocalRay, Span};
 use crate::math::number::{Number, dot};
 
@@ -16,29 +16,15 @@ pub fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
     if ray.discriminant(2, &a).sign()? == Ordering::Less {
         return Some(None);
     }
-    let mut span = Span {
+    let side = Span {
         near: Crossing::round(2, false),
         far: Crossing::round(2, true),
     };
-    let caps = match slab(ray, 2)? {
-        Slab::Crossed(caps) => caps,
-        Slab::Inside => return Some(Some(span)),
-        Slab::Outside => return Some(None),
-    };
-    let enters = caps.near.fraction(ray)?;
-    let leaves = caps.far.fraction(ray)?;
-    if span.near.compare(ray, &leaves)? == Ordering::Greater
-        || span.far.compare(ray, &enters)? == Ordering::Less
-    {
-        return Some(None);
+    match slab(ray, 2)? {
+        Slab::Crossed(caps) => cut(ray, side, &caps),
+        Slab::Inside => Some(Some(side)),
+        Slab::Outside => Some(None),
     }
-    if span.near.compare(ray, &enters)? == Ordering::Less {
-        span.near = caps.near;
-    }
-    if span.far.compare(ray, &leaves)? == Ordering::Greater {
-        span.far = caps.far;
-    }
-    Some(Some(span))
 }
 
 /// A line parallel to the axis meets the caps or nothing.

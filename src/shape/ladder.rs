@@ -3,8 +3,6 @@
 
 use std::cmp::Ordering;
 
-use glam::DVec3;
-
 use super::line::LocalRay;
 use super::placed::SingularMatrix;
 use super::{Ray, Rung};
@@ -68,11 +66,6 @@ impl ScaledRay {
     pub fn direction<N: Number>(&self) -> [N; 3] {
         let components = self.ray.direction.to_array();
         components.map(|x| N::scaled(x, -self.exponent))
-    }
-
-    /// The world direction as given.
-    pub fn world_direction(&self) -> DVec3 {
-        self.ray.direction
     }
 }
 

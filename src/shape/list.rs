@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use super::ladder::ScaledRay;
 use super::line::Crossing;
-use super::placed::Limits;
+use super::question::Limits;
 use super::{Hit, Placed, Ray, Rung, Start, Tally};
 use crate::math::number::{Bounded, Number};
 

@@ -82,7 +82,7 @@ fn sign_of_roots(a: &Root, b: &Root) -> Ordering {
     match (a.sign(), b.sign()) {
         (Ordering::Equal, sign) | (sign, Ordering::Equal) => sign,
         (sign_a, sign_b) if sign_a == sign_b => sign_a,
-        (sign_a, _) if sign_a == Ordering::Greater => order(&a.square.minus(&b.square)),
+        (Ordering::Greater, _) => order(&a.square.minus(&b.square)),
         _ => order(&b.square.minus(&a.square)),
     }
 }

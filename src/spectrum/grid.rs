@@ -44,6 +44,12 @@ impl<T: Scalar> SpectrumBank<T> {
         self.values.len() * size_of::<T>()
     }
 
+    /// Entry `cell` of the spectrum at `start`; past the end the last one.
+    pub fn at(&self, start: u32, cell: usize) -> T {
+        let index = start as usize + cell.min(STRIDE - 1);
+        self.values.get(index).copied().unwrap_or_default()
+    }
+
     /// The mean of the cell at a grid position (cells above 360 nm).
     #[inline(always)]
     pub fn mean<L: Lanes<Scalar = T>>(

@@ -1,0 +1,14 @@
+//! The path loop and its stages.
+//!
+//! A chunk of samples goes through three stages, each over packets of lanes: **camera** fills free
+//! places of the pool with rays, **bounce** advances every path in the pool by one segment, and
+//! **develop** turns the radiance at each path's wavelengths into tristimulus values. Results are
+//! kept by sample, so the order in which paths end cannot show.
+
+pub mod bounce;
+pub mod chunk;
+pub mod develop;
+pub mod intersect;
+pub mod model;
+pub mod pool;
+pub mod surface;

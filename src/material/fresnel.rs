@@ -1,0 +1,47 @@
+//! Fresnel reflectance of smooth interfaces for unpolarised light.
+
+use crate::math::lanes::{Lanes, Real};
+
+/// Cosine of the refracted ray and reflectance at a dielectric interface, for incidence cosine
+/// `cosine` ≥ 0 and `eta` = n_transmitted/n_incident; reflectance 1 and cosine 0 where all light
+/// is reflected (Born and Wolf, Principles of Optics, 1.5).
+#[inline(always)]
+pub fn dielectric<L: Lanes>(l: L, cosine: L::Real, eta: L::Real) -> (L::Real, L::Real) {
+    let one = l.real(1.0);
+    let zero = l.real(0.0);
+    let inverse = one / eta;
+    // 1 − sin²θₜ = 1 − (1 − cos²θᵢ)/η², with (1 − c)(1 + c) for accuracy near c = 1.
+    let sine_squared = (one - cosine) * (one + cosine) * inverse * inverse;
+    let total = sine_squared.ge(one);
+    let transmitted = (one - sine_squared).max(zero).sqrt();
+    let s = (-eta).mul_add(transmitted, cosine) / eta.mul_add(transmitted, cosine);
+    let p = eta.mul_add(cosine, -transmitted) / eta.mul_add(cosine, transmitted);
+    let reflectance = s.mul_add(s, p * p) * l.real(0.5);
+    (
+        l.select(total, zero, transmitted),
+        l.select(total, one, reflectance),
+    )
+}
+
+/// Reflectance of a conductor with ior n + ik in vacuum, for incidence cosine `cosine` ≥ 0
+/// (Born and Wolf 14.4.1; the arrangement without complex numbers is that of S. Lagarde, "Memo
+/// on Fresnel equations", 2013).
+#[inline(always)]
+pub fn conductor<L: Lanes>(l: L, cosine: L::Real, n: L::Real, k: L::Real) -> L::Real {
+    let one = l.real(1.0);
+    let two = l.real(2.0);
+    let c2 = cosine * cosine;
+    let s2 = (one - cosine) * (one + cosine);
+    let (n2, k2) = (n * n, k * k);
+    let t0 = n2 - k2 - s2;
+    // |√(η² − s²)|² = a² + b²
+    let sum = t0.mul_add(t0, l.real(4.0) * n2 * k2).sqrt();
+    let a = ((sum + t0) * l.real(0.5)).max(l.real(0.0)).sqrt();
+    let t1 = sum + c2;
+    let t2 = two * a * cosine;
+    let s = (t1 - t2) / (t1 + t2);
+    let t3 = c2.mul_add(sum, s2 * s2);
+    let t4 = t2 * s2;
+    let p = s * (t3 - t4) / (t3 + t4);
+    (s + p) * l.real(0.5)
+}

@@ -1,0 +1,3 @@
+//! How surfaces scatter light.
+
+pub mod fresnel;

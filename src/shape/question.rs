@@ -1,0 +1,92 @@
+//! The questions asked on the ladder.
+
+use std::cmp::Ordering;
+
+use super::ladder::{Question, ScaledRay};
+use super::line::{Crossing, Fraction, LocalRay, Span};
+use super::{ShapeKind, Start};
+use crate::math::number::Number;
+
+/// The part of a ray on which crossings count.
+#[derive(Debug, Clone, Copy)]
+pub struct Limits {
+    /// Crossings must come after this …
+    pub t_min: f64,
+    /// … or at it.
+    pub inclusive: bool,
+    /// Crossings must come before this.
+    pub t_max: Option<f64>,
+}
+
+impl Limits {
+    /// t > `t_min`, or t ≥ 0 where it is 0, and t < `t_max` where that is finite. `None` for NaN.
+    pub fn new(t_min: f64, t_max: f64) -> Option<Self> {
+        (!t_min.is_nan() && !t_max.is_nan() && t_max != f64::NEG_INFINITY).then(|| Self {
+            t_min: t_min.clamp(f64::MIN, f64::MAX),
+            inclusive: t_min == 0.0,
+            t_max: t_max.is_finite().then_some(t_max),
+        })
+    }
+}
+
+/// Which crossing within the limits comes first?
+pub struct First<'a> {
+    /// The shape.
+    pub kind: ShapeKind,
+    /// The ray in the world, for the units of t.
+    pub ray: &'a ScaledRay,
+    /// Where crossings count.
+    pub limits: &'a Limits,
+    /// What is known of the origin.
+    pub start: Start,
+}
+
+impl Question for First<'_> {
+    type Answer = Option<Crossing>;
+
+    fn ask<N: Number>(&self, ray: &LocalRay<N>) -> Option<Option<Crossing>> {
+        let Some(span) = self.kind.span(ray)? else {
+            return Some(None);
+        };
+        let candidates = [span.near, span.far];
+        let skipped = usize::from(self.start == Start::OnSurfaceInward || span.near == span.far);
+        let t_min = Fraction::whole(self.ray.scaled_t(self.limits.t_min));
+        for crossing in &candidates[skipped..] {
+            let counts = match crossing.compare(ray, &t_min)? {
+                Ordering::Less => false,
+                Ordering::Equal => self.limits.inclusive,
+                Ordering::Greater => true,
+            };
+            if counts {
+                return self.before_end(crossing, ray);
+            }
+        }
+        Some(None)
+    }
+}
+
+impl First<'_> {
+    fn before_end<N: Number>(
+        &self,
+        crossing: &Crossing,
+        ray: &LocalRay<N>,
+    ) -> Option<Option<Crossing>> {
+        let Some(t_max) = self.limits.t_max else {
+            return Some(Some(*crossing));
+        };
+        let t_max = Fraction::whole(self.ray.scaled_t(t_max));
+        let before = crossing.compare(ray, &t_max)? == Ordering::Less;
+        Some(before.then_some(*crossing))
+    }
+}
+
+/// Where does the whole line enter and leave?
+pub struct Through(pub ShapeKind);
+
+impl Question for Through {
+    type Answer = Option<Span>;
+
+    fn ask<N: Number>(&self, ray: &LocalRay<N>) -> Option<Option<Span>> {
+        self.0.span(ray)
+    }
+}
