@@ -24,4 +24,3 @@ pub enum RefractiveIndex {
         k: Spectrum,
     },
 }
-
