@@ -1,0 +1,700 @@
+//! Spectra against published points and closed forms.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a failed unwrap is a failed test, and says where"
+)]
+
+use etalon::spectrum::cells::{CELL_NM, CELLS, cell_of, cells};
+use etalon::spectrum::ior::{RefractiveIndex, glass_names, metal_names, named_glass, named_metal};
+use etalon::spectrum::observer::{
+    LUMINOUS_EFFICACY, REC_709, XYZ_TO_LINEAR_SRGB, Y_INTEGRAL, spectrum_to_xyz, xyz_bar,
+    xyz_to_linear_srgb, xyz_to_rgb_from_chromaticities,
+};
+use etalon::spectrum::rgb::{fit_emission, fit_reflectance};
+use etalon::spectrum::wavelengths::{WavelengthPdf, hero_relative_variance};
+use etalon::spectrum::{NM_MAX, NM_MIN, RgbError, Spectrum, Table, TableError, illuminant};
+use serde_json::Value;
+
+/// Fraunhofer lines d, F and C in nm.
+const LINE_D: f64 = 587.5618;
+const LINE_F: f64 = 486.1327;
+const LINE_C: f64 = 656.2725;
+
+fn truth(id: &str) -> Value {
+    let all: Value = serde_json::from_str(include_str!("data/truths.json")).unwrap();
+    let tests = all["tests"].as_array().unwrap();
+    tests.iter().find(|t| t["id"] == id).unwrap().clone()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    let list = value.as_array().unwrap();
+    list.iter().map(|v| v.as_f64().unwrap()).collect()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+#[track_caller]
+fn assert_relative(got: f64, want: f64, tolerance: f64) {
+    let error = (got - want).abs() / want.abs().max(f64::MIN_POSITIVE);
+    assert!(error <= tolerance, "{got} is not {want}: off by {error:e}");
+}
+
+#[track_caller]
+fn assert_absolute(got: f64, want: f64, tolerance: f64) {
+    let error = (got - want).abs();
+    assert!(error <= tolerance, "{got} is not {want}: off by {error:e}");
+}
+
+fn whole_nm() -> impl Iterator<Item = f64> {
+    (NM_MIN as u32..=NM_MAX as u32).map(f64::from)
+}
+
+/// Ten digits are what the truths promise.
+const TEN_DIGITS: f64 = 1e-10;
+
+// ---- tables
+
+#[test]
+fn tables_reject_what_is_no_table() {
+    let table = |nm: &[f64], values: &[f64]| Table::new(nm.to_vec(), values.to_vec());
+    assert_eq!(table(&[], &[]), Err(TableError::Empty));
+    assert_eq!(
+        table(&[400.0, 500.0], &[1.0]),
+        Err(TableError::Length { nm: 2, values: 1 })
+    );
+    assert!(matches!(
+        table(&[400.0, 400.0], &[1.0, 1.0]),
+        Err(TableError::NotIncreasing { number: 2, .. })
+    ));
+    assert!(matches!(
+        table(&[400.0, 500.0], &[1.0, f64::NAN]),
+        Err(TableError::NotFinite { number: 2, .. })
+    ));
+    assert!(matches!(
+        table(&[400.0, f64::INFINITY], &[1.0, 1.0]),
+        Err(TableError::NotFinite { number: 2, .. })
+    ));
+}
+
+#[test]
+fn csv_errors_name_the_line() {
+    let line = |text: &str| match Table::from_csv(text) {
+        Err(TableError::Line { line, .. }) => line,
+        other => panic!("expected the error of a line, got {other:?}"),
+    };
+    assert_eq!(line("# head\nnm,value\n400,1\n390,2\n"), 4);
+    assert_eq!(line("400,1\n\n500,one\n"), 3);
+    assert_eq!(line("400,1\n# note\n500,1,2\n"), 3);
+    assert_eq!(line("400,1\n500,inf\n"), 2);
+    assert_eq!(line("400,1\nnm,value\n500,2\n"), 2);
+    assert_eq!(line("400,1\r\n500 2\r\n"), 2);
+    assert_eq!(
+        Table::from_csv("# nothing\nnm,value\n"),
+        Err(TableError::Empty)
+    );
+}
+
+#[test]
+fn csv_reads_what_it_should() {
+    let text = "\u{feff}# source\r\nnm, value\r\n 400 , 0.5 \r\n500,1e-1\r\n";
+    let want = Table::new(vec![400.0, 500.0], vec![0.5, 0.1]).unwrap();
+    assert_eq!(Table::from_csv(text).unwrap(), want);
+}
+
+#[test]
+fn tables_are_linear_inside_and_zero_outside() {
+    let table = Table::new(vec![400.0, 500.0, 600.0], vec![1.0, 3.0, 2.0]).unwrap();
+    let spectrum = Spectrum::Table(table);
+    for (nm, want) in [
+        (399.999, 0.0),
+        (400.0, 1.0),
+        (450.0, 2.0),
+        (500.0, 3.0),
+        (575.0, 2.25),
+        (600.0, 2.0),
+        (600.001, 0.0),
+    ] {
+        assert_eq!(spectrum.value(nm), want, "at {nm} nm");
+    }
+}
+
+#[test]
+fn bounds_hold_everywhere_and_are_attained() {
+    let table = |nm: &[f64], values: &[f64]| {
+        Spectrum::Table(Table::new(nm.to_vec(), values.to_vec()).unwrap())
+    };
+    let cases = [
+        (Spectrum::Constant(0.3), 0.3, 0.3),
+        // Samples beyond the visible range do not count, the values at its ends do.
+        (table(&[340.0, 380.0, 900.0], &[9.0, 1.0, 1.0]), 1.0, 5.0),
+        // Missing ends are zero.
+        (table(&[400.0, 500.0], &[0.2, 0.4]), 0.0, 0.4),
+        (table(&[300.0, 350.0], &[0.2, 0.4]), 0.0, 0.0),
+    ];
+    for (spectrum, min, max) in cases {
+        assert_eq!(spectrum.min_value(), min, "{spectrum:?}");
+        assert_eq!(spectrum.max_value(), max, "{spectrum:?}");
+    }
+    let blackbody = |kelvin, scale| Spectrum::Blackbody { kelvin, scale };
+    let smooth = [
+        blackbody(1000.0, 1.0),
+        blackbody(5000.0, 2.0),
+        blackbody(5000.0, -2.0),
+        blackbody(20000.0, 1.0),
+        Spectrum::rgb_reflectance([0.8, 0.3, 0.1]).unwrap(),
+        Spectrum::rgb_reflectance([0.1, 0.9, 0.2]).unwrap(),
+        Spectrum::rgb_emission([0.1, 3.0, 0.2]).unwrap(),
+        Spectrum::d65(1.0),
+    ];
+    for spectrum in smooth {
+        let (min, max) = (spectrum.min_value(), spectrum.max_value());
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for step in 0..=47_000 {
+            let value = spectrum.value(NM_MIN + f64::from(step) * 0.01);
+            low = low.min(value);
+            high = high.max(value);
+        }
+        assert!(
+            min <= low && high <= max,
+            "{spectrum:?}: {min} {low} {high} {max}"
+        );
+        if !matches!(spectrum, Spectrum::SigmoidD65 { .. }) {
+            // Steps of 0.01 nm miss an extremum of these curves by less than this.
+            assert_absolute(max, high, 1e-7 * high.abs());
+            assert_absolute(min, low, 1e-7 * high.abs());
+        }
+    }
+}
+
+#[test]
+fn only_constant_spectra_are_constant() {
+    let table = |nm: &[f64], values: &[f64]| {
+        Spectrum::Table(Table::new(nm.to_vec(), values.to_vec()).unwrap())
+    };
+    assert!(Spectrum::equal_energy(2.0).is_constant());
+    assert!(table(&[360.0, 830.0], &[0.5, 0.5]).is_constant());
+    assert!(!table(&[361.0, 830.0], &[0.5, 0.5]).is_constant());
+    assert!(!table(&[300.0, 400.0, 900.0], &[0.5, 0.6, 0.5]).is_constant());
+    assert!(
+        Spectrum::rgb_reflectance([0.2, 0.2, 0.2])
+            .unwrap()
+            .is_constant()
+    );
+    assert!(
+        !Spectrum::rgb_reflectance([0.2, 0.2, 0.3])
+            .unwrap()
+            .is_constant()
+    );
+    assert!(!Spectrum::d65(1.0).is_constant());
+}
+
+// ---- observer
+
+#[test]
+fn observer_has_the_published_points() {
+    // CIE 018:2019 at the first, last and some inner wavelengths.
+    for (nm, want) in [
+        (360.0, [0.000_129_9, 0.000_003_917, 0.000_606_1]),
+        (450.0, [0.3362, 0.038, 1.77211]),
+        (555.0, [0.512_050_1, 1.0, 0.005_75]),
+        (600.0, [1.0622, 0.631, 0.0008]),
+        (830.0, [1.251_141e-6, 4.5181e-7, 0.0]),
+    ] {
+        assert_eq!(xyz_bar(nm), want, "at {nm} nm");
+    }
+    assert_eq!(xyz_bar(359.9), [0.0; 3]);
+    assert_eq!(xyz_bar(830.1), [0.0; 3]);
+    let [_, y, _] = xyz_bar(555.5);
+    assert_eq!(y, 0.5 * (xyz_bar(555.0)[1] + xyz_bar(556.0)[1]));
+}
+
+#[test]
+fn the_constant_of_y_is_the_trapezoid_sum() {
+    let want = number(&truth("equal_energy_xyz")["exact"]["int_ybar_1nm"]);
+    assert_eq!(Y_INTEGRAL, want);
+    let sum: f64 = whole_nm().map(|nm| xyz_bar(nm)[1]).sum();
+    let trapezoid = sum - 0.5 * (xyz_bar(NM_MIN)[1] + xyz_bar(NM_MAX)[1]);
+    assert_relative(trapezoid, want, 1e-14);
+    // The plain sum is another number.
+    assert!((sum / want - 1.0).abs() > 1e-8);
+}
+
+#[test]
+fn equal_energy_has_luminance_one() {
+    for value in [1.0, 0.18, 1e6] {
+        // A thousand additions of positive numbers.
+        let [_, y, _] = spectrum_to_xyz(&Spectrum::equal_energy(value));
+        assert_relative(y, value, 1e-14);
+    }
+}
+
+#[test]
+fn box_spectra_have_their_xyz_and_rgb() {
+    let truth = truth("equal_energy_xyz");
+    for row in truth["exact"]["rows"].as_array().unwrap() {
+        let ends = numbers(&row["box"]);
+        let spectrum = Spectrum::Table(Table::new(ends, vec![1.0, 1.0]).unwrap());
+        let xyz = spectrum_to_xyz(&spectrum);
+        let rgb = xyz_to_linear_srgb(xyz);
+        for i in 0..3 {
+            assert_relative(xyz[i], numbers(&row["XYZ"])[i], TEN_DIGITS);
+            assert_absolute(rgb[i], numbers(&row["linear_sRGB"])[i], TEN_DIGITS);
+        }
+    }
+}
+
+#[test]
+fn the_product_of_two_linear_pieces_is_integrated_exactly() {
+    // A triangle with its corners between the observer's nodes: x̄ȳz̄ are linear in each of the
+    // pieces, so Simpson's rule on every piece is exact as well.
+    let corners = [500.3, 555.75, 600.6];
+    let spectrum = Spectrum::Table(Table::new(corners.to_vec(), vec![0.0, 2.0, 0.0]).unwrap());
+    let mut nodes: Vec<f64> = (501..=600).map(f64::from).chain(corners).collect();
+    nodes.sort_by(f64::total_cmp);
+    let mut want = 0.0;
+    for pair in nodes.windows(2) {
+        let f = |nm: f64| spectrum.value(nm) * xyz_bar(nm)[1];
+        let (a, b) = (pair[0], pair[1]);
+        want += (b - a) / 6.0 * (f(a) + 4.0 * f(0.5 * (a + b)) + f(b));
+    }
+    assert_relative(spectrum_to_xyz(&spectrum)[1], want / Y_INTEGRAL, 1e-13);
+}
+
+#[test]
+fn the_matrix_is_the_rounded_standard_one() {
+    let derived = xyz_to_rgb_from_chromaticities(REC_709);
+    // Known digits of the matrix of the exact chromaticities.
+    assert_absolute(derived[0][0], 3.240_969_94, 1e-8);
+    assert_absolute(derived[1][1], 1.875_967_50, 1e-8);
+    assert_absolute(derived[2][2], 1.056_971_51, 1e-8);
+    let difference = (0..9)
+        .map(|i| (derived[i / 3][i % 3] - XYZ_TO_LINEAR_SRGB[i / 3][i % 3]).abs())
+        .fold(0.0, f64::max);
+    assert!((1e-4..5e-4).contains(&difference), "{difference}");
+}
+
+// ---- blackbody and illuminants
+
+#[test]
+fn blackbodies_have_planck_s_radiance() {
+    let truth = truth("blackbody");
+    let wavelengths = numbers(&truth["setup"]["nm"]);
+    for row in truth["exact"]["rows"].as_array().unwrap() {
+        let kelvin = number(&row["T"]);
+        let spectrum = Spectrum::Blackbody { kelvin, scale: 1.0 };
+        for (nm, want) in wavelengths.iter().zip(numbers(&row["L"])) {
+            assert_relative(spectrum.value(*nm), want, 1e-13);
+        }
+        // The truth's quadrature is the 1 nm trapezoid of the product.
+        let mut sum = [0.0; 3];
+        for nm in whole_nm() {
+            let weight = if nm == NM_MIN || nm == NM_MAX {
+                0.5
+            } else {
+                1.0
+            };
+            for (total, bar) in sum.iter_mut().zip(xyz_bar(nm)) {
+                *total += weight * bar * spectrum.value(nm);
+            }
+        }
+        let all: f64 = sum.iter().sum();
+        assert_relative(sum[1], number(&row["Y_integral"]), TEN_DIGITS);
+        assert_relative(
+            LUMINOUS_EFFICACY * sum[1],
+            number(&row["luminance_cd_m2"]),
+            TEN_DIGITS,
+        );
+        assert_absolute(sum[0] / all, number(&row["x"]), TEN_DIGITS);
+        assert_absolute(sum[1] / all, number(&row["y"]), TEN_DIGITS);
+        // The exact integral of curve times polygon differs by the trapezoid's own error, which
+        // is that of 5 nm steps (1.08e-6) divided by 25.
+        let [x, y, z] = spectrum_to_xyz(&spectrum);
+        assert_relative(y * Y_INTEGRAL, sum[1], 1e-6 / 25.0 * 2.0);
+        assert_absolute(x / (x + y + z), number(&row["x"]), 1e-7);
+    }
+}
+
+#[test]
+fn a_cold_body_is_dark() {
+    for kelvin in [-1.0, 0.0, 1.0] {
+        let value = Spectrum::Blackbody { kelvin, scale: 1.0 }.value(555.0);
+        assert_eq!(value, 0.0, "{kelvin} K");
+    }
+}
+
+#[test]
+fn d65_has_the_published_points_and_its_white() {
+    let published = illuminant::published_d65();
+    for (nm, want) in [(300.0, 0.0341), (380.0, 49.9755), (435.0, 95.7736)] {
+        assert_eq!(published.value(nm), want);
+    }
+    for (nm, want) in [
+        (560.0, 100.0),
+        (700.0, 71.6091),
+        (780.0, 63.3828),
+        (830.0, 60.3125),
+    ] {
+        assert_eq!(published.value(nm), want);
+    }
+    let [x, y, z] = spectrum_to_xyz(&Spectrum::d65(3.0));
+    assert_relative(y, 3.0, 1e-13);
+    // CIE 15:2018 gives x = 0.31272, y = 0.32903 (2°), 5 digits.
+    assert_absolute(x / (x + y + z), 0.31272, 0.6e-5);
+    assert_absolute(y / (x + y + z), 0.32903, 0.6e-5);
+    assert_eq!(Spectrum::named("d65"), Some(Spectrum::d65(1.0)));
+    assert_eq!(Spectrum::named("E"), Some(Spectrum::Constant(1.0)));
+    assert_eq!(Spectrum::named("D50"), None);
+}
+
+// ---- RGB
+
+fn reflected_rgb(reflectance: &Spectrum) -> [f64; 3] {
+    let mut xyz = [[0.0; 3]; 2];
+    // 0.05 nm midpoints: an independent and coarser quadrature than the fit's.
+    for step in 0..9400 {
+        let nm = NM_MIN + (f64::from(step) + 0.5) * 0.05;
+        let light = illuminant::d65().value(nm) * 0.05;
+        for i in 0..3 {
+            xyz[0][i] += xyz_bar(nm)[i] * light * reflectance.value(nm);
+            xyz[1][i] += xyz_bar(nm)[i] * light;
+        }
+    }
+    let [colour, white] = xyz.map(xyz_to_linear_srgb);
+    std::array::from_fn(|i| colour[i] / white[i])
+}
+
+#[test]
+fn greys_reflect_the_same_at_every_wavelength() {
+    for c in [0.0, 0.18, 0.5, 1.0] {
+        assert_eq!(Spectrum::rgb_reflectance([c; 3]), Ok(Spectrum::Constant(c)));
+    }
+}
+
+#[test]
+fn reflectances_return_their_colour() {
+    for index in 0..216 {
+        let rgb = [index / 36, index / 6 % 6, index % 6].map(|i| f64::from(i) / 5.0);
+        let fit = fit_reflectance(rgb).unwrap();
+        assert!(fit.spectrum.min_value() >= 0.0 && fit.spectrum.max_value() <= 1.0);
+        let back = reflected_rgb(&fit.spectrum);
+        for i in 0..3 {
+            // The stated residual, plus the error of this test's quadrature.
+            assert_absolute(back[i], rgb[i], fit.residual + 1e-5);
+        }
+        println!("{rgb:?} {:e} {:?}", fit.residual, fit.spectrum);
+        let inner = rgb.iter().all(|c| (0.1..=0.9).contains(c));
+        if inner {
+            assert!(fit.residual <= 1e-4, "{rgb:?}: {}", fit.residual);
+        }
+    }
+}
+
+#[test]
+fn emissions_display_as_their_colour() {
+    for rgb in [
+        [1.0; 3],
+        [5.0, 1.0, 0.2],
+        [0.0, 100.0, 50.0],
+        [0.3, 0.3, 2.0],
+    ] {
+        let fit = fit_emission(rgb).unwrap();
+        let back = xyz_to_linear_srgb(spectrum_to_xyz(&fit.spectrum));
+        println!("{rgb:?} {:e} {:?}", fit.residual, fit.spectrum);
+        for i in 0..3 {
+            assert_absolute(back[i], rgb[i], fit.residual + 1e-12 * 100.0);
+        }
+    }
+    // White is attainable, to rounding.
+    assert!(fit_emission([1.0; 3]).unwrap().residual < 1e-12);
+    assert_eq!(
+        Spectrum::rgb_emission([0.0; 3]),
+        Ok(Spectrum::Constant(0.0))
+    );
+}
+
+#[test]
+fn impossible_colours_are_refused() {
+    assert_eq!(
+        Spectrum::rgb_reflectance([0.5, 1.1, 0.0]),
+        Err(RgbError::Reflectance(1.1))
+    );
+    assert!(Spectrum::rgb_reflectance([0.5, f64::NAN, 0.0]).is_err());
+    assert_eq!(
+        Spectrum::rgb_emission([0.5, -1.0, 0.0]),
+        Err(RgbError::Emission(-1.0))
+    );
+    assert!(Spectrum::rgb_emission([f64::INFINITY, 0.0, 0.0]).is_err());
+}
+
+// ---- refractive indices
+
+#[test]
+fn glasses_have_their_catalogue_index_and_abbe_number() {
+    // n_d and Abbe number of Schott's data sheets (5 and 4 digits).
+    for (name, n_d, abbe) in [
+        ("N-BK7", 1.51680, 64.17),
+        ("N-SF10", 1.72828, 28.53),
+        ("N-SF11", 1.78472, 25.68),
+        ("F2", 1.62004, 36.37),
+        ("SF10", 1.72825, 28.41),
+        ("SF11", 1.78472, 25.76),
+        // Malitson 1965, table I.
+        ("fused-silica", 1.45846, 67.82),
+    ] {
+        let index = named_glass(name).unwrap();
+        let n = index.n(LINE_D);
+        assert_absolute(n, n_d, 0.6e-5);
+        let got = (n - 1.0) / (index.n(LINE_F) - index.n(LINE_C));
+        assert_absolute(got, abbe, 0.006);
+    }
+    // Water at 20 °C (IAPWS gives 1.33336 to 4 digits in air); diamond (Peter 1923).
+    assert_absolute(named_glass("water").unwrap().n(LINE_D), 1.3334, 1e-4);
+    assert_absolute(named_glass("diamond").unwrap().n(LINE_D), 2.4176, 5e-4);
+    assert_eq!(named_glass("Water"), named_glass("water"));
+    assert_eq!(named_glass("SF-11"), None);
+}
+
+#[test]
+fn n_sf11_follows_its_dispersion() {
+    let glass = named_glass("n-sf11").unwrap();
+    for row in truth("prism")["exact"]["rows"].as_array().unwrap() {
+        assert_relative(glass.n(number(&row["nm"])), number(&row["n"]), 1e-14);
+    }
+}
+
+#[test]
+fn every_glass_is_usable_over_the_whole_range() {
+    for name in glass_names() {
+        let glass = named_glass(name).unwrap();
+        assert!(glass.disperses() && glass.check().is_ok(), "{name}");
+        let mut before = f64::INFINITY;
+        for nm in whole_nm() {
+            let (n, k) = glass.n_k(nm);
+            assert!(n >= 1.0 && n < before && k == 0.0, "{name} at {nm} nm: {n}");
+            before = n;
+        }
+    }
+}
+
+#[test]
+fn metals_have_their_published_points() {
+    // Johnson and Christy 1972 at 1.88 and 2.38 eV; Rakić 1995 at 2.0 eV.
+    for (name, nm, want) in [
+        ("Ag", 659.5, (0.05, 4.483)),
+        ("Ag", 520.9, (0.05, 3.324)),
+        ("Au", 659.5, (0.14, 3.697)),
+        ("Au", 520.9, (0.62, 2.081)),
+        ("Cu", 659.5, (0.22, 3.747)),
+        ("Cu", 520.9, (1.18, 2.608)),
+        ("Al", 619.93, (1.366, 7.4052)),
+    ] {
+        assert_eq!(
+            named_metal(name).unwrap().n_k(nm),
+            want,
+            "{name} at {nm} nm"
+        );
+    }
+    // Known normal reflectances: silver white, gold dark in blue, aluminium near 91 % (Rakić).
+    for (name, nm, want) in [
+        ("Ag", 550.0, 0.98),
+        ("Au", 450.0, 0.39),
+        ("Al", 550.0, 0.915),
+    ] {
+        let (n, k) = named_metal(name).unwrap().n_k(nm);
+        let reflectance = ((n - 1.0).powi(2) + k * k) / ((n + 1.0).powi(2) + k * k);
+        assert_absolute(reflectance, want, 0.01);
+    }
+    for name in metal_names() {
+        let metal = named_metal(name).unwrap();
+        assert!(metal.check().is_ok() && metal.disperses(), "{name}");
+        for nm in [NM_MIN, NM_MAX].into_iter().chain(whole_nm()) {
+            let (n, k) = metal.n_k(nm);
+            assert!(
+                n > 0.0 && k > 1.0 && n.is_finite() && k.is_finite(),
+                "{name} at {nm} nm"
+            );
+        }
+    }
+    assert_eq!(named_metal("Fe"), None);
+}
+
+#[test]
+fn formulas_by_hand() {
+    let cauchy = RefractiveIndex::Cauchy(vec![1.5, 0.004, 0.0001]);
+    assert_relative(cauchy.n(500.0), 1.5 + 0.004 / 0.25 + 0.0001 / 0.0625, 1e-15);
+    assert!(cauchy.disperses());
+    assert!(!RefractiveIndex::Cauchy(vec![1.5, 0.0]).disperses());
+    assert!(!RefractiveIndex::Constant(1.5).disperses());
+    let resonant = RefractiveIndex::Sellmeier {
+        b: [1.0, 0.0, 0.0],
+        c: [0.25, 0.0, 0.0],
+    };
+    assert!(
+        resonant.check().is_err(),
+        "no index on the resonance at 500 nm"
+    );
+    assert!(RefractiveIndex::Constant(-1.5).check().is_err());
+    let negative_k = RefractiveIndex::Complex {
+        n: Spectrum::Constant(1.0),
+        k: Spectrum::Constant(-1.0),
+    };
+    assert!(negative_k.check().is_err());
+}
+
+// ---- wavelengths
+
+#[test]
+fn the_visible_pdf_is_the_published_one() {
+    let truth = truth("wavelength_pdf");
+    let pdf = WavelengthPdf::Visible;
+    assert_relative(pdf.pdf(538.0), number(&truth["exact"]["A"]), 1e-14);
+    for (u, nm) in numbers(&truth["setup"]["u"])
+        .iter()
+        .zip(numbers(&truth["exact"]["lam"]))
+    {
+        assert_relative(pdf.sample(*u), nm, 1e-12);
+    }
+}
+
+#[test]
+fn one_wavelength_has_the_known_variance() {
+    let truth = truth("wavelength_pdf");
+    for (pdf, key) in [
+        (WavelengthPdf::Visible, "relvar_visible"),
+        (WavelengthPdf::Uniform, "relvar_uniform"),
+    ] {
+        // The truth integrates by the 1 nm trapezoid.
+        let mut square = [0.0; 3];
+        let mut plain = [0.0; 3];
+        for nm in whole_nm() {
+            let weight = if nm == NM_MIN || nm == NM_MAX {
+                0.5
+            } else {
+                1.0
+            };
+            for (i, bar) in xyz_bar(nm).into_iter().enumerate() {
+                square[i] += weight * bar * bar / pdf.pdf(nm);
+                plain[i] += weight * bar;
+            }
+        }
+        for i in 0..3 {
+            let got = square[i] / (plain[i] * plain[i]) - 1.0;
+            assert_relative(got, numbers(&truth["exact"][key])[i], 1e-9);
+        }
+    }
+}
+
+#[test]
+fn hero_sets_have_the_known_variance() {
+    let truth = truth("wavelength_pdf");
+    for count in [1, 2, 4, 8, 16, 32] {
+        let got = hero_relative_variance(WavelengthPdf::Visible, count);
+        let want = numbers(&truth["exact"]["relvar_hero_flat_spectrum"][count.to_string()]);
+        println!("{count} {got:?} {want:?}");
+        for i in 0..3 {
+            // Six digits are given.
+            assert_relative(got[i], want[i], 5e-6);
+        }
+    }
+    let [x, y, z] = hero_relative_variance(WavelengthPdf::Observer, 4);
+    println!("observer {x} {y} {z}");
+}
+
+#[test]
+fn densities_integrate_to_one_and_invert_their_distribution() {
+    for pdf in [
+        WavelengthPdf::Visible,
+        WavelengthPdf::Observer,
+        WavelengthPdf::Uniform,
+    ] {
+        assert_eq!(pdf.sample(0.0), NM_MIN);
+        assert_eq!(pdf.sample(1.0), NM_MAX);
+        assert_eq!(pdf.pdf(NM_MIN - 1e-9), 0.0);
+        assert_eq!(pdf.pdf(NM_MAX + 1e-9), 0.0);
+        // Simpson per nm: exact for linear pieces, 1e-10 for the smooth one.
+        let mut cumulative = 0.0;
+        for nm in whole_nm().take_while(|&nm| nm < NM_MAX) {
+            let (a, m, b) = (pdf.pdf(nm), pdf.pdf(nm + 0.5), pdf.pdf(nm + 1.0));
+            cumulative += (a + 4.0 * m + b) / 6.0;
+            // u carries an error of 1e-10 at most, which the density's inverse magnifies.
+            assert_absolute(pdf.sample(cumulative.min(1.0)), nm + 1.0, 1e-10 / b);
+        }
+        assert_absolute(cumulative, 1.0, 1e-10);
+    }
+}
+
+#[test]
+fn hero_sets_rotate_one_number() {
+    let pdf = WavelengthPdf::Visible;
+    let set: [f64; 4] = pdf.sample_set(0.6);
+    for (j, u) in [0.6, 0.85, 0.1, 0.35].into_iter().enumerate() {
+        assert_absolute(set[j], pdf.sample(u), 1e-9);
+    }
+}
+
+// ---- cells
+
+#[test]
+fn cells_hold_exact_means() {
+    // A ramp that begins inside cell 162 and ends inside cell 562, with a kink at a cell's edge.
+    let spectrum =
+        Spectrum::Table(Table::new(vec![400.6, 450.0, 500.7], vec![1.0, 2.0, 4.0]).unwrap());
+    let means = cells(&spectrum);
+    assert_eq!(means.len(), CELLS);
+    assert_eq!(means[161], 0.0);
+    assert_eq!(means[563], 0.0);
+    // Covered part of the cell [400.5, 400.75] times the value at its middle.
+    assert_relative(means[162], 0.15 / CELL_NM * spectrum.value(400.675), 1e-12);
+    assert_relative(means[562], 0.2 / CELL_NM * spectrum.value(500.6), 1e-12);
+    assert_relative(means[200], spectrum.value(410.125), 1e-14);
+    let area = 0.5 * (3.0 * 49.4 + 6.0 * 50.7);
+    assert_relative(means.iter().sum::<f64>() * CELL_NM, area, 1e-13);
+    let blackbody = Spectrum::Blackbody {
+        kelvin: 3000.0,
+        scale: 1.0,
+    };
+    let got = cells(&blackbody)[100];
+    let simpson = [385.0, 385.125, 385.25].map(|nm| blackbody.value(nm));
+    assert_relative(
+        got,
+        (simpson[0] + 4.0 * simpson[1] + simpson[2]) / 6.0,
+        1e-13,
+    );
+}
+
+#[test]
+fn wavelengths_find_their_cell() {
+    assert_eq!(cell_of(NM_MIN), 0);
+    assert_eq!(cell_of(360.25), 1);
+    assert_eq!(cell_of(400.6), 162);
+    assert_eq!(cell_of(NM_MAX), CELLS - 1);
+    assert_eq!(cell_of(0.0), 0);
+    assert_eq!(cell_of(1e9), CELLS - 1);
+}
+
+// ---- data beside the scenes
+
+#[test]
+fn the_cornell_box_s_spectra_can_be_read() {
+    for (text, nm, want) in [
+        (
+            include_str!("../scenes/data/cornell_white.csv"),
+            400.0,
+            0.343,
+        ),
+        (include_str!("../scenes/data/cornell_red.csv"), 632.0, 0.62),
+        (
+            include_str!("../scenes/data/cornell_green.csv"),
+            532.0,
+            0.462,
+        ),
+        (include_str!("../scenes/data/cornell_lamp.csv"), 600.0, 15.6),
+    ] {
+        let table = Table::from_csv(text).unwrap();
+        assert_eq!(table.value(nm), want);
+        assert_eq!((table.nm[0], *table.nm.last().unwrap()), (400.0, 700.0));
+    }
+}
