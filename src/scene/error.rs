@@ -76,7 +76,10 @@ impl Diagnostic {
     pub(super) fn at(origin: &str, text: &str, start: usize, end: usize, message: String) -> Self {
         let start = floor_boundary(text, start);
         let end = floor_boundary(text, end.max(start));
-        let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
+        let byte_order_mark = if text.starts_with('\u{feff}') { 3 } else { 0 };
+        let start = start.max(byte_order_mark);
+        let end = end.max(start);
+        let line_start = text[..start].rfind('\n').map_or(byte_order_mark, |i| i + 1);
         let line_end = text[start..].find('\n').map_or(text.len(), |i| start + i);
         let column = text[line_start..start].chars().count();
         let width = text[start..end.min(line_end)].trim_end().chars().count();

@@ -8,6 +8,7 @@ use std::ops::RangeInclusive;
 
 use glam::DVec3;
 
+use super::names::{nearest, one_of};
 use super::tree::{Node, Place, Table, Value};
 
 /// Something wrong at a place.
@@ -53,9 +54,6 @@ pub(super) struct Report {
 /// A file with thousands of misspelt names among thousands of names should still be answered at
 /// once, so only this many are looked up.
 const SEARCHES: usize = 64;
-
-/// As many names as a message lists.
-const LISTED: usize = 12;
 
 impl Report {
     pub fn add(&self, complaint: Complaint) {
@@ -153,6 +151,9 @@ impl Report {
             Value::Integer(number) if range.contains(number) => Some(*number),
             Value::Integer(number) => self
                 .fail(Complaint::new(node.place, format!("{what} is {number}")).expected(expected)),
+            Value::Float(number) => self.fail(
+                Complaint::new(node.place, format!("{what} is {number:?}")).expected(expected),
+            ),
             _ => self.wrong_type(what, node, &expected),
         }
     }
@@ -221,41 +222,6 @@ impl Report {
             Some((_, choice)) => Some(*choice),
             None => self.unknown(node.place, format!("{what} is \"{text}\""), text, &names),
         }
-    }
-}
-
-/// The nearest of `names`, if it is close enough to be a slip of the pen: one edit in three
-/// letters, at least one, whatever the case.
-pub(super) fn nearest(name: &str, names: &[&str]) -> Option<String> {
-    let lower = name.to_lowercase();
-    let allowed = (lower.chars().count() / 3).max(1);
-    names
-        .iter()
-        .map(|candidate| {
-            let distance = strsim::osa_distance(&lower, &candidate.to_lowercase());
-            (distance, *candidate)
-        })
-        .filter(|(distance, _)| *distance <= allowed)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate.to_owned())
-}
-
-/// `one of "a", "b"`, shortened when there are many.
-pub(super) fn one_of(names: &[&str]) -> String {
-    if names.is_empty() {
-        return "a name (but none is defined)".to_owned();
-    }
-    let listed: Vec<String> = names
-        .iter()
-        .take(LISTED)
-        .map(|n| format!("\"{n}\""))
-        .collect();
-    let rest = names.len() - listed.len();
-    let listed = listed.join(", ");
-    match (names.len(), rest) {
-        (1, _) => listed,
-        (_, 0) => format!("one of {listed}"),
-        _ => format!("one of {listed} … and {rest} more"),
     }
 }
 

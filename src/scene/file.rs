@@ -173,7 +173,6 @@ fn origins<'a>(path: &'a str, text: &str, options: &Overrides) -> Origins<'a> {
 }
 
 fn parse_tree(origins: &Origins<'_>, text: &str) -> Result<Table, SceneError> {
-    // A byte order mark is not part of the text, but positions count it.
     tree::parse(text, 0, 0).map_err(|error| {
         let span = error.span().unwrap_or(0..0);
         let place = Place {

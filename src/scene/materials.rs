@@ -1,11 +1,12 @@
 //! Reading materials.
 
-use super::fields::{Complaint, Fields, one_of};
-use super::lookup;
+use super::fields::{Complaint, Fields};
+use super::names::{GLASSES, METALS, one_of};
 use super::spectra::{Role, Spectra};
 use super::tree::{Node, Value};
 use super::{Emission, Material, Named, Sides, Surface};
-use crate::spectrum::ior::RefractiveIndex;
+use crate::spectrum::ior::{RefractiveIndex, named_glass, named_metal};
+use crate::spectrum::{NM_MAX, NM_MIN};
 
 /// The materials of a file.
 #[derive(Default)]
@@ -27,9 +28,6 @@ const KEYS: &[&str] = &[
     "emit",
     "sides",
 ];
-
-/// Wavelengths at which a formula for n has to make sense, nm: the CIE observer's.
-const VISIBLE_NM: std::ops::RangeInclusive<u32> = 360..=830;
 
 /// Reads `[materials]`; `None` if that is no table at all.
 pub(super) fn read(spectra: &Spectra<'_>, node: Option<&Node>) -> Option<Materials> {
@@ -129,11 +127,11 @@ fn checkerboard(
 fn mirror(spectra: &Spectra<'_>, path: &str, node: &Node) -> Option<Surface> {
     let report = spectra.report;
     match &node.value {
-        Value::Text(name) => match lookup::metal(name) {
+        Value::Text(name) => match named_metal(name) {
             Some(index) => Some(Surface::Conductor(index)),
             None => {
                 let message = format!("{path} names the unknown metal \"{name}\"");
-                report.unknown(node.place, message, name, lookup::metal_names())
+                report.unknown(node.place, message, name, &METALS)
             }
         },
         Value::Table(_) => {
@@ -167,11 +165,11 @@ fn mirror(spectra: &Spectra<'_>, path: &str, node: &Node) -> Option<Surface> {
 fn glass(spectra: &Spectra<'_>, path: &str, node: &Node) -> Option<RefractiveIndex> {
     let report = spectra.report;
     match &node.value {
-        Value::Text(name) => match lookup::glass(name) {
+        Value::Text(name) => match named_glass(name) {
             Some(index) => Some(index),
             None => {
                 let message = format!("{path} names the unknown glass \"{name}\"");
-                report.unknown(node.place, message, name, lookup::glass_names())
+                report.unknown(node.place, message, name, &GLASSES)
             }
         },
         Value::Table(_) => {
@@ -246,50 +244,29 @@ fn check_index(
             fail(format!("{path} is {n}"))
         };
     }
-    let micrometres = |nm: u32| f64::from(nm) / 1000.0;
-    let (low, high) = (
-        micrometres(*VISIBLE_NM.start()),
-        micrometres(*VISIBLE_NM.end()),
-    );
     if let RefractiveIndex::Sellmeier { b, c } = index {
+        let micrometres = (NM_MIN / 1000.0)..=(NM_MAX / 1000.0);
         let resonance = b
             .iter()
             .zip(c)
-            .find(|(b, c)| **b != 0.0 && (low * low..=high * high).contains(*c));
+            .find(|(b, c)| **b != 0.0 && micrometres.contains(&c.sqrt()));
         if let Some((_, c)) = resonance {
             let nm = c.sqrt() * 1000.0;
             return fail(format!("{path} has a resonance at {nm:.1} nm"));
         }
     }
-    for nm in VISIBLE_NM {
-        let n = formula(index, micrometres(nm));
+    for whole in NM_MIN as u32..=NM_MAX as u32 {
+        let n = index.n(f64::from(whole));
         if !(n.is_finite() && n >= 1.0) {
             let value = if n.is_nan() {
                 "no real value".to_owned()
             } else {
                 format!("n = {n}")
             };
-            return fail(format!("{path} has {value} at {nm} nm"));
+            return fail(format!("{path} has {value} at {whole} nm"));
         }
     }
     Some(())
-}
-
-/// The dispersion formulas at a wavelength in µm; indices without a formula need no check here.
-fn formula(index: &RefractiveIndex, micrometres: f64) -> f64 {
-    let square = micrometres * micrometres;
-    match index {
-        RefractiveIndex::Cauchy(coefficients) => coefficients
-            .iter()
-            .rev()
-            .fold(0.0, |sum, coefficient| sum / square + coefficient),
-        RefractiveIndex::Sellmeier { b, c } => {
-            let terms = b.iter().zip(c).map(|(b, c)| b * square / (square - c));
-            (1.0 + terms.sum::<f64>()).sqrt()
-        }
-        RefractiveIndex::Constant(n) => *n,
-        RefractiveIndex::Complex { .. } => 1.0,
-    }
 }
 
 fn emission(spectra: &Spectra<'_>, fields: &Fields<'_>) -> Option<Option<Emission>> {

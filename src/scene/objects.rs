@@ -4,7 +4,8 @@ use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
-use super::fields::{Complaint, Fields, Report, one_of};
+use super::fields::{Complaint, Fields, Report};
+use super::names::one_of;
 use super::transform;
 use super::tree::{Node, Value};
 use super::{Implicit, ImplicitSurface, Named, Object, Shape};

@@ -5,9 +5,8 @@ use std::path::Path;
 
 use super::fields::{Complaint, Fields, Report};
 use super::file;
-use super::lookup;
 use super::tree::{Node, Table, Value};
-use crate::spectrum::{self, Spectrum};
+use crate::spectrum::{self, NM_MAX, NM_MIN, RgbError, SPECTRUM_NAMES, Spectrum};
 
 /// A spectrum as written; what a colour becomes depends on where it is used.
 #[derive(Debug, Clone)]
@@ -59,7 +58,7 @@ impl<'a> Spectra<'a> {
             report,
             base_dir,
             named: HashMap::new(),
-            names: lookup::SPECTRA.iter().map(ToString::to_string).collect(),
+            names: SPECTRUM_NAMES.map(str::to_owned).to_vec(),
         };
         let Some(node) = node else { return spectra };
         let Value::Table(table) = &node.value else {
@@ -67,7 +66,7 @@ impl<'a> Spectra<'a> {
             return spectra;
         };
         for entry in &table.entries {
-            if lookup::SPECTRA.contains(&entry.key.as_str()) {
+            if Spectrum::named(&entry.key).is_some() {
                 let message = format!("\"{}\" is the name of a standard spectrum", entry.key);
                 report.add(Complaint::new(entry.key_place, message).expected("a name of your own"));
                 continue;
@@ -84,12 +83,10 @@ impl<'a> Spectra<'a> {
         let spectrum = match (self.draft(what, node)?, role) {
             (Draft::Fixed(spectrum), _) => spectrum,
             (Draft::Rgb(rgb), Role::Reflectance) => {
-                self.check_rgb(what, node, rgb, 1.0)?;
-                lookup::rgb_reflectance(rgb)
+                self.fitted(what, node, Spectrum::rgb_reflectance(rgb))?
             }
             (Draft::Rgb(rgb), Role::Emission) => {
-                self.check_rgb(what, node, rgb, f64::INFINITY)?;
-                lookup::rgb_emission(rgb)
+                self.fitted(what, node, Spectrum::rgb_emission(rgb))?
             }
             (Draft::Rgb(_), Role::Index | Role::Extinction) => {
                 let complaint = Complaint::new(node.place, format!("{what} is a colour"));
@@ -102,21 +99,19 @@ impl<'a> Spectra<'a> {
         Some(spectrum)
     }
 
-    fn check_rgb(&self, what: &str, node: &Node, rgb: [f64; 3], largest: f64) -> Option<()> {
-        let wrong = rgb.into_iter().find(|c| *c < 0.0 || *c > largest);
-        let Some(wrong) = wrong else { return Some(()) };
-        let message = format!("{what} has the colour component {wrong}");
-        let expected = if largest == 1.0 {
-            "components between 0 and 1"
-        } else {
-            "components of at least 0"
+    fn fitted(&self, what: &str, node: &Node, fit: Result<Spectrum, RgbError>) -> Option<Spectrum> {
+        let (component, expected) = match fit {
+            Ok(spectrum) => return Some(spectrum),
+            Err(RgbError::Reflectance(c)) => (c, "components between 0 and 1"),
+            Err(RgbError::Emission(c)) => (c, "finite components of at least 0"),
         };
+        let message = format!("{what} has the colour component {component}");
         self.report
             .fail(Complaint::new(node.place, message).expected(expected))
     }
 
     fn check(&self, what: &str, node: &Node, spectrum: &Spectrum, role: Role) -> Option<()> {
-        let (low, high) = lookup::spectrum_bounds(spectrum);
+        let (low, high) = (spectrum.min_value(), spectrum.max_value());
         let fail = |value: f64, expected: &str| {
             let message = if matches!(spectrum, Spectrum::Constant(_)) {
                 format!("{what} is {value}")
@@ -130,7 +125,11 @@ impl<'a> Spectra<'a> {
             Role::Reflectance if low < 0.0 => fail(low, "a reflectance between 0 and 1"),
             Role::Reflectance if high > 1.0 => fail(high, "a reflectance between 0 and 1"),
             Role::Emission | Role::Extinction if low < 0.0 => fail(low, "values of at least 0"),
-            Role::Index if low <= 0.0 => fail(low, "values greater than 0"),
+            Role::Index if low <= 0.0 => fail(
+                low,
+                &format!("values greater than 0 at all wavelengths from {NM_MIN} to {NM_MAX} nm"),
+            ),
+            _ if !high.is_finite() => fail(high, "finite values"),
             _ => Some(()),
         }
     }
@@ -142,14 +141,14 @@ impl<'a> Spectra<'a> {
                 Some(Draft::Fixed(Spectrum::Constant(value)))
             }
             Value::Text(name) => self.by_name(what, node, name, 1.0),
-            Value::Table(_) => self.from_table(what, node),
+            Value::Table(_) => self.described(what, node),
             _ => self.report.wrong_type(what, node, EXPECTED),
         }
     }
 
     fn by_name(&self, what: &str, node: &Node, name: &str, scale: f64) -> Option<Draft> {
-        if let Some(spectrum) = lookup::spectrum(name, scale) {
-            return Some(Draft::Fixed(spectrum));
+        if let Some(spectrum) = Spectrum::named(name) {
+            return self.scaled(what, node, Draft::Fixed(spectrum), scale);
         }
         if let Some(draft) = self.named.get(name) {
             return self.scaled(what, node, draft.clone()?, scale);
@@ -159,7 +158,7 @@ impl<'a> Spectra<'a> {
         self.report.unknown(node.place, message, name, &names)
     }
 
-    fn from_table(&self, what: &str, node: &Node) -> Option<Draft> {
+    fn described(&self, what: &str, node: &Node) -> Option<Draft> {
         let fields = Fields::open(self.report, what, node, KEYS)?;
         let scale = fields.optional("scale", 1.0, |what, node| self.report.number(what, node));
         let (kind, inner) = fields.exactly_one(KINDS)?;
@@ -187,21 +186,10 @@ impl<'a> Spectra<'a> {
                 let rgb = rgb.map(|c| c * factor);
                 (Draft::Rgb(rgb), rgb.iter().all(|c| c.is_finite()))
             }
-            Draft::Fixed(Spectrum::Constant(value)) => (
-                Draft::Fixed(Spectrum::Constant(value * factor)),
-                (value * factor).is_finite(),
-            ),
-            Draft::Fixed(Spectrum::Blackbody { kelvin, scale }) => {
-                let scale = scale * factor;
-                (
-                    Draft::Fixed(Spectrum::Blackbody { kelvin, scale }),
-                    scale.is_finite(),
-                )
-            }
-            Draft::Fixed(Spectrum::Table(mut table)) => {
-                table.values.iter_mut().for_each(|v| *v *= factor);
-                let finite = table.values.iter().all(|v| v.is_finite());
-                (Draft::Fixed(Spectrum::Table(table)), finite)
+            Draft::Fixed(spectrum) => {
+                let scaled = spectrum.scaled(factor);
+                let finite = scaled.min_value().is_finite() && scaled.max_value().is_finite();
+                (Draft::Fixed(scaled), finite)
             }
         };
         if finite {
@@ -246,8 +234,7 @@ impl<'a> Spectra<'a> {
             self.report
                 .fail(Complaint::new(node.place, message).expected(expected))
         };
-        let path = self.base_dir.join(name);
-        let bytes = match file::read_bytes(&path) {
+        let bytes = match file::read_bytes(&self.base_dir.join(name)) {
             Ok(bytes) => bytes,
             Err(error) => {
                 let error = error.to_string();
@@ -256,9 +243,23 @@ impl<'a> Spectra<'a> {
                 return fail(message, "a file relative to the scene file");
             }
         };
-        match parse_csv(&bytes) {
-            Ok(table) => Some(table),
-            Err((message, expected)) => fail(format!("{name}: {message}"), expected),
+        let rows = "rows of two finite numbers, wavelength in nm (increasing) and value";
+        let Ok(text) = String::from_utf8(bytes) else {
+            return fail(format!("{name} is not UTF-8 text"), rows);
+        };
+        let table = match spectrum::Table::from_csv(&text) {
+            Ok(table) => table,
+            Err(error) => return fail(format!("{name}: {error}"), rows),
+        };
+        if table.nm.len() < 2 {
+            return fail(format!("{name} has only one sample"), SAMPLES);
+        }
+        match table.nm.first() {
+            Some(first) if *first <= 0.0 => {
+                let message = format!("{name}: the wavelength {first} nm is not positive");
+                fail(message, "wavelengths greater than 0 nm")
+            }
+            _ => Some(table),
         }
     }
 }
@@ -276,39 +277,6 @@ fn check_wavelength(previous: Option<&f64>, wavelength: f64) -> Result<(), (Stri
         )),
         _ => Ok(()),
     }
-}
-
-/// Two columns, nm and value, with or without a heading; `#` begins a comment line.
-fn parse_csv(bytes: &[u8]) -> Result<spectrum::Table, (String, &'static str)> {
-    const ROW: &str = "two columns, wavelength in nm and value, both finite";
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(bytes);
-    let (mut nm, mut values) = (Vec::new(), Vec::new());
-    for (row, record) in reader.records().enumerate() {
-        let record = record.map_err(|error| (error.to_string(), ROW))?;
-        let line = record
-            .position()
-            .map_or(row as u64 + 1, csv::Position::line);
-        let numbers: Vec<Option<f64>> = record.iter().map(|cell| cell.parse().ok()).collect();
-        match numbers.as_slice() {
-            [Some(wavelength), Some(value)] if wavelength.is_finite() && value.is_finite() => {
-                check_wavelength(nm.last(), *wavelength)
-                    .map_err(|(message, expected)| (format!("line {line}: {message}"), expected))?;
-                nm.push(*wavelength);
-                values.push(*value);
-            }
-            [None, None] if row == 0 => {}
-            _ => return Err((format!("line {line} cannot be read"), ROW)),
-        }
-    }
-    if nm.len() < 2 {
-        return Err((format!("{} samples", nm.len()), SAMPLES));
-    }
-    Ok(spectrum::Table { nm, values })
 }
 
 /// Reads `environment = SPECTRUM` or `[environment] radiance = SPECTRUM`.

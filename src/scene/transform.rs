@@ -4,7 +4,8 @@ use glam::DVec3;
 use num_bigint::BigInt;
 use num_traits::Zero;
 
-use super::fields::{Complaint, Fields, Report, one_of};
+use super::fields::{Complaint, Fields, Report};
+use super::names::one_of;
 use super::tree::{Node, Place, Value};
 use crate::math::affine::Affine;
 
