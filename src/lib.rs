@@ -1,6 +1,9 @@
 //! etalon: a physically based spectral renderer, and the instrument that proves its pictures
 //! right.
 
+pub mod film;
 pub mod math;
+pub mod sample;
 pub mod scene;
+pub mod shape;
 pub mod spectrum;

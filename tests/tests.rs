@@ -1,3 +1,7 @@
 //! The test suite, one binary.
+
+mod film_files;
+mod oracle_primitives;
 mod scene_file;
+mod shape_ladder;
 mod spectrum;

@@ -1,3 +1,9 @@
 //! Numbers: transforms, extended precision, lanes. Knows nobody else.
 
 pub mod affine;
+pub mod double_double;
+pub mod exact;
+pub mod functions;
+pub mod lanes;
+pub mod number;
+pub mod vec3;

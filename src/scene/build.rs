@@ -57,12 +57,13 @@ const VECTOR: &str = "an array of 3 finite numbers";
 
 /// Reads the whole tree; `None` only if the report has a complaint.
 pub(super) fn scene(report: &Report, base_dir: &Path, root: &Table) -> Option<Parts> {
-    let start = Place {
+    // What is missing from the file as a whole is missing at its end.
+    let end = Place {
         origin: 0,
-        start: 0,
-        end: 0,
+        start: usize::MAX,
+        end: usize::MAX,
     };
-    let top = Fields::of(report, String::new(), start, root, TOP_KEYS);
+    let top = Fields::of(report, String::new(), end, root, TOP_KEYS);
     for key in ["title", "about"] {
         top.optional(key, "", |what, node| report.text(what, node));
     }

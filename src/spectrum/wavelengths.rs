@@ -124,8 +124,12 @@ impl ObserverDensity {
 ///
 /// The estimate has the period 1/count in u; its variance is the mean over one period, taken
 /// at the midpoints of 2¹⁸/count parts, good to about 6 digits.
+///
+/// # Panics
+/// If `count` is 0 or above 2¹⁸.
 pub fn hero_relative_variance(pdf: WavelengthPdf, count: usize) -> [f64; 3] {
     let steps = (1 << 18) / count;
+    assert!(steps > 0, "a set of {count} wavelengths is too large");
     let integral = observer_integral();
     let mut sum = [0.0; 3];
     for step in 0..steps {

@@ -1,0 +1,102 @@
+//! The camera: from pixel and lens positions to rays.
+//!
+//! All geometry of the loop is about the camera's position, so that the precision of a picture
+//! does not depend on where in the world it is taken.
+
+use glam::DVec3;
+
+use crate::math::lanes::{Lanes, Real, Scalar};
+use crate::math::vec3::Vec3;
+use crate::sample::sequence::CameraSample;
+use crate::sample::warp::square_to_disk;
+use crate::scene::{Camera, Projection};
+
+/// The camera's orthonormal axes in world space: right, up, forward.
+pub fn axes(camera: &Camera) -> [DVec3; 3] {
+    let forward = (camera.to - camera.from).normalize();
+    let right = forward.cross(camera.up).normalize();
+    [right, right.cross(forward), forward]
+}
+
+/// Size of a pixel on the plane at distance 1 (perspective) or in scene units (orthographic).
+pub fn pixel_size(projection: &Projection, height: u32) -> f64 {
+    let extent = match *projection {
+        Projection::Perspective { fov } => {
+            let half = fov.to_radians() / 2.0;
+            2.0 * libm::sin(half) / libm::cos(half)
+        }
+        Projection::Orthographic { height } => height,
+    };
+    extent / f64::from(height)
+}
+
+/// A camera as lanes use it; its position is the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LaneCamera<T> {
+    axes: [[T; 3]; 3],
+    pixel_size: T,
+    centre: [T; 2],
+    orthographic: bool,
+    /// Lens radius and focus distance.
+    lens: Option<(T, T)>,
+}
+
+impl<T: Scalar> LaneCamera<T> {
+    /// Rounds a camera for an image of the given size in pixels.
+    pub fn new(camera: &Camera, size: [u32; 2]) -> Self {
+        Self {
+            axes: axes(camera).map(|v| v.to_array().map(T::from_f64)),
+            pixel_size: T::from_f64(pixel_size(&camera.projection, size[1])),
+            centre: size.map(|n| T::from_f64(f64::from(n) / 2.0)),
+            orthographic: matches!(camera.projection, Projection::Orthographic { .. }),
+            lens: camera
+                .lens
+                .map(|lens| (T::from_f64(lens.radius), T::from_f64(lens.focus))),
+        }
+    }
+
+    /// Whether there is a lens.
+    pub fn has_lens(&self) -> bool {
+        self.lens.is_some()
+    }
+
+    /// Origin and unit direction of the rays through pixels (x, y), y downwards.
+    #[inline(always)]
+    pub fn rays<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        x: L::Int,
+        y: L::Int,
+        sample: &CameraSample<L>,
+    ) -> (Vec3<L::Real>, Vec3<L::Real>) {
+        let axis = |i: usize| {
+            let [x, y, z] = self.axes[i];
+            Vec3::new(l.splat(x), l.splat(y), l.splat(z))
+        };
+        let (right, up, forward) = (axis(0), axis(1), axis(2));
+        let size = l.splat(self.pixel_size);
+        let [u, v] = sample.pixel;
+        let across = ((l.to_real(x) - l.splat(self.centre[0])) + u) * size;
+        let above = ((l.splat(self.centre[1]) - l.to_real(y)) - v) * size;
+        let zero = l.real(0.0);
+        let in_plane = Vec3::new(zero, zero, zero)
+            .along(right, across)
+            .along(up, above);
+        let (origin, direction) = if self.orthographic {
+            (in_plane, forward)
+        } else {
+            (Vec3::new(zero, zero, zero), forward + in_plane)
+        };
+        let Some((radius, focus)) = self.lens else {
+            return (origin, direction.normalized(l));
+        };
+        let (lens_x, lens_y) = square_to_disk(l, sample.lens[0], sample.lens[1]);
+        let radius = l.splat(radius);
+        let shift = Vec3::new(zero, zero, zero)
+            .along(right, lens_x * radius)
+            .along(up, lens_y * radius);
+        // `direction` has a forward component of 1, so this is on the plane of focus.
+        let to_focus = direction.scale(l.splat(focus)) - shift;
+        (origin + shift, to_focus.normalized(l))
+    }
+}

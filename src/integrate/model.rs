@@ -1,0 +1,108 @@
+//! What the loop works on: the scene as flat tables of lane scalars, built by the plan.
+
+use crate::camera::LaneCamera;
+use crate::light::LaneLight;
+use crate::math::lanes::Scalar;
+use crate::sample::sequence::Sequence;
+use crate::shape::lanes::LaneShape;
+use crate::shape::lanes::implicit::LaneImplicit;
+use crate::shape::resolve::Resolver;
+use crate::spectrum::grid::SpectrumBank;
+
+/// How a surface scatters, as the loop dispatches on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Scatter {
+    /// Nothing is reflected.
+    Black = 0,
+    /// Lambertian.
+    Diffuse = 1,
+    /// Smooth conductor, Fresnel.
+    Conductor = 2,
+    /// Mirror of constant reflectance.
+    IdealMirror = 3,
+    /// Smooth dielectric.
+    Glass = 4,
+}
+
+/// A checkerboard over object coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Checker<T> {
+    /// Cells per canonical unit along each axis.
+    pub frequency: [T; 3],
+    /// Spectrum of the odd cells.
+    pub odd: u32,
+}
+
+/// What an object looks like to the loop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ObjectShading<T> {
+    /// Scattering kind.
+    pub scatter: Scatter,
+    /// Spectrum of the albedo, the reflectance or n.
+    pub spectrum: u32,
+    /// Spectrum of the extinction coefficient.
+    pub extinction: u32,
+    /// Whether n varies with wavelength.
+    pub disperses: bool,
+    /// Checkerboard, whose even cells have `spectrum`.
+    pub checker: Option<Checker<T>>,
+    /// Spectrum of the emitted radiance.
+    pub emission: Option<u32>,
+    /// Whether the front and the back emit.
+    pub emits: [bool; 2],
+    /// Index of the light that samples this object.
+    pub light: Option<u32>,
+    /// Index of the material in the scene.
+    pub material: u32,
+}
+
+/// What can happen in the scene: the loop's branches, the same for all lanes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Needs {
+    /// Some surface is Lambertian.
+    pub diffuse: bool,
+    /// Some surface is a conductor.
+    pub conductor: bool,
+    /// Some surface is a mirror of constant reflectance.
+    pub ideal_mirror: bool,
+    /// Some surface is glass.
+    pub glass: bool,
+    /// Some glass disperses.
+    pub dispersion: bool,
+    /// Some surface emits.
+    pub emission: bool,
+    /// The camera has a lens.
+    pub lens: bool,
+    /// Some object is an implicit surface.
+    pub implicit: bool,
+    /// Some object is a checkerboard.
+    pub checker: bool,
+}
+
+/// Everything the loop reads.
+#[derive(Debug)]
+pub struct Model<T: Scalar> {
+    /// Rays for pixels.
+    pub camera: LaneCamera<T>,
+    /// Random points.
+    pub sequence: Sequence,
+    /// Longest path in segments; `u32::MAX` where there is no limit.
+    pub max_depth: u32,
+    /// What can happen.
+    pub needs: Needs,
+    /// Placed shapes by object.
+    pub shapes: Vec<LaneShape<T>>,
+    /// Implicit surfaces: (object, surface).
+    pub implicits: Vec<(u32, LaneImplicit<T>)>,
+    /// Appearance by object.
+    pub shading: Vec<ObjectShading<T>>,
+    /// Samplable lights.
+    pub lights: Vec<LaneLight<T>>,
+    /// Spectrum of the environment.
+    pub environment: Option<u32>,
+    /// All spectra on the wavelength grid.
+    pub spectra: SpectrumBank<T>,
+    /// Decides what lanes cannot.
+    pub resolver: Resolver,
+}

@@ -1,0 +1,114 @@
+//! Lights in the shape of a cube under any affine map.
+
+use glam::DVec3;
+
+use super::{Towards, area_pdf, by_area, vector};
+use crate::math::lanes::{Lanes, Real, Scalar};
+use crate::math::vec3::Vec3;
+
+/// Six parallelograms; a point is chosen by area on those that face the receiver.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CubeLight<T> {
+    faces: [Face<T>; 6],
+    emits: [bool; 2],
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Face<T> {
+    centre: [T; 3],
+    half: [[T; 3]; 2],
+    normal: [T; 3],
+    area: T,
+}
+
+impl<T: Scalar> CubeLight<T> {
+    /// From the centre, the three half-edges and the unit outward normals of the faces towards
+    /// them.
+    pub fn new(centre: DVec3, half: [DVec3; 3], normals: [DVec3; 3], emits: [bool; 2]) -> Self {
+        let face = |i: usize| {
+            let axis = i / 2;
+            let sign = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+            let (a, b) = (half[(axis + 1) % 3], half[(axis + 2) % 3]);
+            Face {
+                centre: (centre + sign * half[axis]).to_array().map(T::from_f64),
+                half: [a, b].map(|h| h.to_array().map(T::from_f64)),
+                normal: (sign * normals[axis]).to_array().map(T::from_f64),
+                area: T::from_f64(4.0 * a.cross(b).length()),
+            }
+        };
+        Self {
+            faces: [face(0), face(1), face(2), face(3), face(4), face(5)],
+            emits,
+        }
+    }
+
+    /// Areas of the faces that a point could be lit by: from outside those that face it, from
+    /// inside all, if that side emits; with their sum.
+    #[inline(always)]
+    fn visible<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> ([L::Real; 6], L::Real) {
+        let zero = l.real(0.0);
+        let mut facing = [l.mask(false); 6];
+        let mut outside = l.mask(false);
+        for (facing, face) in facing.iter_mut().zip(&self.faces) {
+            let height = (p - vector(l, &face.centre)).dot(vector(l, &face.normal));
+            *facing = height.gt(zero);
+            outside = outside | *facing;
+        }
+        let mut areas = [zero; 6];
+        let mut total = zero;
+        for ((area, face), facing) in areas.iter_mut().zip(&self.faces).zip(facing) {
+            let lit = (facing & l.mask(self.emits[0])) | (!outside & l.mask(self.emits[1]));
+            *area = l.select(lit, l.splat(face.area), zero);
+            total = total + *area;
+        }
+        (areas, total)
+    }
+
+    /// A direction from p.
+    #[inline(always)]
+    pub fn sample<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        p: Vec3<L::Real>,
+        [u, v]: [L::Real; 2],
+    ) -> Towards<L> {
+        let (areas, total) = self.visible(l, p);
+        let zero = l.real(0.0);
+        let (one, two) = (l.real(1.0), l.real(2.0));
+        let target = u * total;
+        let mut below = zero;
+        let mut to = Vec3::new(zero, zero, one);
+        let mut normal = to;
+        for (face, area) in self.faces.iter().zip(areas) {
+            // The last face with area whose share begins at or below the target wins.
+            let here = target.ge(below) & area.gt(zero);
+            let share = (target - below) / area;
+            let x = two.mul_add(share.max(zero).min(one), -one);
+            let y = two.mul_add(v, -one);
+            let point = (vector(l, &face.centre) - p)
+                .along(vector(l, &face.half[0]), x)
+                .along(vector(l, &face.half[1]), y);
+            to = Vec3::select(l, here, point, to);
+            normal = Vec3::select(l, here, vector(l, &face.normal), normal);
+            below = below + area;
+        }
+        let mut towards = by_area(l, to, normal, one / total, [true, true]);
+        towards.valid = towards.valid & total.gt(zero);
+        towards
+    }
+
+    /// Density of [`Self::sample`].
+    #[inline(always)]
+    pub fn pdf<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        p: Vec3<L::Real>,
+        direction: Vec3<L::Real>,
+        distance: L::Real,
+        normal: Vec3<L::Real>,
+    ) -> L::Real {
+        let (_, total) = self.visible(l, p);
+        area_pdf(l, direction, distance, normal, l.real(1.0) / total)
+    }
+}
+

@@ -1,0 +1,234 @@
+//! Lights that can be sampled from a point: direction, distance and solid-angle density.
+
+mod cube;
+mod rectangle;
+mod sphere;
+
+use glam::DVec3;
+
+use crate::math::lanes::{Lanes, Mask, Real, Scalar};
+use crate::math::vec3::Vec3;
+use crate::sample::warp::square_to_disk;
+
+pub use cube::CubeLight;
+pub use rectangle::RectangleLight;
+pub use sphere::SphereLight;
+
+/// A sampled direction towards a light.
+#[derive(Clone, Copy)]
+pub struct Towards<L: Lanes> {
+    /// Unit direction from the receiving point.
+    pub direction: Vec3<L::Real>,
+    /// Distance to the light's point; infinite for directional light.
+    pub distance: L::Real,
+    /// Density in solid angle, sr⁻¹; for lights without extent the factor d² or 1 by which the
+    /// intensity or irradiance is divided.
+    pub pdf: L::Real,
+    /// Whether the light sends anything this way.
+    pub valid: L::Mask,
+}
+
+/// A light as lanes use it.
+#[derive(Debug, Clone)]
+pub struct LaneLight<T> {
+    /// Where its points are.
+    pub shape: LightShape<T>,
+    /// Probability of choosing it.
+    pub probability: T,
+    /// Probability of choosing an earlier one.
+    pub below: T,
+    /// Its spectrum: radiance, intensity or irradiance.
+    pub spectrum: u32,
+    /// The emitting object; `u32::MAX` for lights without a surface.
+    pub object: u32,
+}
+
+/// The lights that can be sampled, by shape.
+#[derive(Debug, Clone)]
+pub enum LightShape<T> {
+    /// Right-angled rectangle: solid angle near, area far.
+    Rectangle(RectangleLight<T>),
+    /// Any ellipse, by area.
+    Disk(PlanarLight<T>),
+    /// Any parallelogram, by area.
+    Parallelogram(PlanarLight<T>),
+    /// A sphere: its cone from outside, by area from inside.
+    Sphere(SphereLight<T>),
+    /// Any parallelepiped: its visible faces by area.
+    Cube(CubeLight<T>),
+    /// A point.
+    Point([T; 3]),
+    /// Parallel light: the direction towards it.
+    Directional([T; 3]),
+}
+
+impl<T: Scalar> LightShape<T> {
+    /// Whether scattered rays can hit the light, so that the two strategies are to be weighted.
+    pub fn has_extent(&self) -> bool {
+        !matches!(self, Self::Point(_) | Self::Directional(_))
+    }
+
+    /// Samples a direction from points p.
+    #[inline(always)]
+    pub fn sample<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        p: Vec3<L::Real>,
+        [u, v]: [L::Real; 2],
+    ) -> Towards<L> {
+        match self {
+            Self::Rectangle(light) => light.sample(l, p, [u, v]),
+            Self::Disk(light) => {
+                let (x, y) = square_to_disk(l, u, v);
+                light.towards(l, p, x, y)
+            }
+            Self::Parallelogram(light) => {
+                let two = l.real(2.0);
+                let one = l.real(1.0);
+                light.towards(l, p, two.mul_add(u, -one), two.mul_add(v, -one))
+            }
+            Self::Sphere(light) => light.sample(l, p, [u, v]),
+            Self::Cube(light) => light.sample(l, p, [u, v]),
+            Self::Point(at) => {
+                let to = vector(l, at) - p;
+                let squared = to.length_squared();
+                let distance = squared.sqrt();
+                Towards {
+                    direction: to.scale(l.real(1.0) / distance),
+                    distance,
+                    pdf: squared,
+                    valid: squared.gt(l.real(0.0)),
+                }
+            }
+            Self::Directional(direction) => Towards {
+                direction: vector(l, direction),
+                distance: l.real(f64::INFINITY),
+                pdf: l.real(1.0),
+                valid: l.mask(true),
+            },
+        }
+    }
+
+    /// Density in solid angle with which [`Self::sample`] from p would have chosen the hit at
+    /// distance `distance` in unit direction `direction`.
+    #[inline(always)]
+    pub fn pdf<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        p: Vec3<L::Real>,
+        direction: Vec3<L::Real>,
+        distance: L::Real,
+        normal: Vec3<L::Real>,
+    ) -> L::Real {
+        match self {
+            Self::Rectangle(light) => light.pdf(l, p, direction, distance, normal),
+            Self::Disk(light) | Self::Parallelogram(light) => {
+                area_pdf(l, direction, distance, normal, l.splat(light.inverse_area))
+            }
+            Self::Sphere(light) => light.pdf(l, p, direction, distance, normal),
+            Self::Cube(light) => light.pdf(l, p, direction, distance, normal),
+            Self::Point(_) | Self::Directional(_) => l.real(0.0),
+        }
+    }
+}
+
+/// A parallelogram or ellipse: centre ± two half-axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanarLight<T> {
+    centre: [T; 3],
+    half: [[T; 3]; 2],
+    normal: [T; 3],
+    inverse_area: T,
+    emits: [bool; 2],
+}
+
+impl<T: Scalar> PlanarLight<T> {
+    /// From its centre and half-axes; `shape_area` is the area of the canonical shape (4 or π),
+    /// `normal` the unit normal of the front.
+    pub fn new(
+        centre: DVec3,
+        half: [DVec3; 2],
+        normal: DVec3,
+        shape_area: f64,
+        emits: [bool; 2],
+    ) -> Self {
+        let area = half[0].cross(half[1]).length() * shape_area;
+        Self {
+            centre: centre.to_array().map(T::from_f64),
+            half: half.map(|h| h.to_array().map(T::from_f64)),
+            normal: normal.to_array().map(T::from_f64),
+            inverse_area: T::from_f64(1.0 / area),
+            emits,
+        }
+    }
+
+    #[inline(always)]
+    fn towards<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        p: Vec3<L::Real>,
+        x: L::Real,
+        y: L::Real,
+    ) -> Towards<L> {
+        let to = (vector(l, &self.centre) - p)
+            .along(vector(l, &self.half[0]), x)
+            .along(vector(l, &self.half[1]), y);
+        by_area(
+            l,
+            to,
+            vector(l, &self.normal),
+            l.splat(self.inverse_area),
+            self.emits,
+        )
+    }
+}
+
+/// Three scalars as a lane vector.
+#[inline(always)]
+fn vector<L: Lanes>(l: L, v: &[L::Scalar; 3]) -> Vec3<L::Real> {
+    Vec3::new(l.splat(v[0]), l.splat(v[1]), l.splat(v[2]))
+}
+
+/// Direction, distance and density for a point chosen uniformly on an area, `to` away from the
+/// receiver, with the sides that emit.
+#[inline(always)]
+fn by_area<L: Lanes>(
+    l: L,
+    to: Vec3<L::Real>,
+    normal: Vec3<L::Real>,
+    inverse_area: L::Real,
+    emits: [bool; 2],
+) -> Towards<L> {
+    let squared = to.length_squared();
+    let distance = squared.sqrt();
+    let direction = to.scale(l.real(1.0) / distance);
+    let zero = l.real(0.0);
+    // Light leaves along −direction: the front is seen where direction · normal < 0.
+    let cosine = -direction.dot(normal);
+    let front = cosine.gt(zero) & l.mask(emits[0]);
+    let back = cosine.lt(zero) & l.mask(emits[1]);
+    Towards {
+        direction,
+        distance,
+        pdf: squared / cosine.abs() * inverse_area,
+        valid: front | back,
+    }
+}
+
+/// Density in solid angle of uniform sampling by area: d²/(A |cos|).
+#[inline(always)]
+fn area_pdf<L: Lanes>(
+    _l: L,
+    direction: Vec3<L::Real>,
+    distance: L::Real,
+    normal: Vec3<L::Real>,
+    inverse_area: L::Real,
+) -> L::Real {
+    distance * distance / direction.dot(normal).abs() * inverse_area
+}
+
+/// Whether any lane is set; a convenience for the shapes.
+#[inline(always)]
+fn any<M: Mask>(m: M) -> bool {
+    m.any()
+}

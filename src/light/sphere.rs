@@ -1,0 +1,117 @@
+//! Spherical lights.
+
+use glam::DVec3;
+
+use super::{Towards, area_pdf, by_area, vector};
+use crate::math::functions::sin_cos_turns;
+use crate::math::lanes::{Lanes, Real, Scalar};
+use crate::math::vec3::Vec3;
+use crate::sample::warp::uniform_sphere;
+
+/// A sphere, sampled uniformly in the cone it fills from outside (P. Shirley, C. Wang and
+/// K. Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", ACM TOG 15 (1996)),
+/// and by area from inside.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SphereLight<T> {
+    centre: [T; 3],
+    radius: T,
+    radius_squared: T,
+    inverse_area: T,
+    emits: [bool; 2],
+}
+
+/// The cone of directions in which a receiver sees the sphere.
+struct Cone<L: Lanes> {
+    to: Vec3<L::Real>,
+    squared: L::Real,
+    /// 1 − cos of the half-angle, without cancellation.
+    height: L::Real,
+    outside: L::Mask,
+}
+
+impl<T: Scalar> SphereLight<T> {
+    /// From centre and radius.
+    pub fn new(centre: DVec3, radius: f64, emits: [bool; 2]) -> Self {
+        Self {
+            centre: centre.to_array().map(T::from_f64),
+            radius: T::from_f64(radius),
+            radius_squared: T::from_f64(radius * radius),
+            inverse_area: T::from_f64(1.0 / (4.0 * std::f64::consts::PI * radius * radius)),
+            emits,
+        }
+    }
+
+    #[inline(always)]
+    fn cone<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> Cone<L> {
+        let to = vector(l, &self.centre) - p;
+        let squared = to.length_squared();
+        let sine_squared = l.splat(self.radius_squared) / squared;
+        let one = l.real(1.0);
+        let cosine = (one - sine_squared).max(l.real(0.0)).sqrt();
+        Cone {
+            to,
+            squared,
+            height: sine_squared / (one + cosine),
+            outside: sine_squared.lt(one),
+        }
+    }
+
+    /// A direction from p.
+    #[inline(always)]
+    pub fn sample<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        p: Vec3<L::Real>,
+        [u, v]: [L::Real; 2],
+    ) -> Towards<L> {
+        let one = l.real(1.0);
+        let zero = l.real(0.0);
+        let cone = self.cone(l, p);
+        // By area, as seen from inside.
+        let w = uniform_sphere(l, u, v);
+        let to = cone.to.along(w, l.splat(self.radius));
+        let inside = by_area(l, to, w, l.splat(self.inverse_area), [false, self.emits[1]]);
+        // In the cone: 1 − cos θ uniform.
+        let height = u * cone.height;
+        let cosine = one - height;
+        let sine_squared = height * (one + cosine);
+        let (s, c) = sin_cos_turns(l, v);
+        let sine = sine_squared.sqrt();
+        let axis = cone.to.scale(one / cone.squared.sqrt());
+        let (a, b) = axis.frame(l);
+        let direction = axis.scale(cosine).along(a, sine * c).along(b, sine * s);
+        // Nearer crossing: d cos θ − √(r² − d² sin² θ).
+        let half = (-cone.squared)
+            .mul_add(sine_squared, l.splat(self.radius_squared))
+            .max(zero)
+            .sqrt();
+        let distance = cone.squared.sqrt().mul_add(cosine, -half);
+        Towards {
+            direction: Vec3::select(l, cone.outside, direction, inside.direction),
+            distance: l.select(cone.outside, distance, inside.distance),
+            pdf: l.select(cone.outside, cone_pdf(l, cone.height), inside.pdf),
+            valid: (cone.outside & l.mask(self.emits[0])) | (!cone.outside & inside.valid),
+        }
+    }
+
+    /// Density of [`Self::sample`].
+    #[inline(always)]
+    pub fn pdf<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        p: Vec3<L::Real>,
+        direction: Vec3<L::Real>,
+        distance: L::Real,
+        normal: Vec3<L::Real>,
+    ) -> L::Real {
+        let cone = self.cone(l, p);
+        let area = area_pdf(l, direction, distance, normal, l.splat(self.inverse_area));
+        l.select(cone.outside, cone_pdf(l, cone.height), area)
+    }
+}
+
+/// 1/(2π (1 − cos)).
+#[inline(always)]
+fn cone_pdf<L: Lanes>(l: L, height: L::Real) -> L::Real {
+    l.real(1.0 / std::f64::consts::TAU) / height
+}

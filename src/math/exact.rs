@@ -1,0 +1,170 @@
+//! Exact dyadic numbers, mantissa · 2^exponent with integers of any size: the last rung.
+
+use std::cmp::Ordering;
+
+use num_bigint::{BigInt, Sign};
+
+use super::number::Number;
+
+/// An exact dyadic rational. Sums, differences, products and signs are exact.
+#[derive(Debug, Clone)]
+pub struct Exact {
+    mantissa: BigInt,
+    exponent: i64,
+}
+
+/// Relative precision, in bits, of quotients and roots: enough for a value that loses 900 bits to
+/// cancellation afterwards, more than the ratio of any origin within 1e250 to any object's size.
+pub const VALUE_BITS: u64 = 1024;
+
+impl Exact {
+    /// Shift the mantissa so that it has at least `bits` bits and the exponent is even.
+    fn widened_to(&self, bits: u64) -> (BigInt, i64) {
+        let mut shift = bits.saturating_sub(self.mantissa.bits());
+        if (self.exponent - shift as i64) % 2 != 0 {
+            shift += 1;
+        }
+        (&self.mantissa << shift, self.exponent - shift as i64)
+    }
+
+    /// Position of the leading bit, as for log₂|x|; `None` for zero.
+    pub fn magnitude(&self) -> Option<i64> {
+        (self.mantissa.sign() != Sign::NoSign)
+            .then(|| self.exponent + self.mantissa.bits() as i64 - 1)
+    }
+
+    /// self · 2^exponent.
+    pub fn shifted(&self, exponent: i64) -> Self {
+        Self {
+            mantissa: self.mantissa.clone(),
+            exponent: self.exponent + exponent,
+        }
+    }
+
+    fn order(&self) -> Ordering {
+        match self.mantissa.sign() {
+            Sign::Minus => Ordering::Less,
+            Sign::NoSign => Ordering::Equal,
+            Sign::Plus => Ordering::Greater,
+        }
+    }
+}
+
+impl Number for Exact {
+    /// Zero stands in for a number that is not finite; callers refuse those before.
+    fn scaled(x: f64, exponent: i32) -> Self {
+        debug_assert!(x.is_finite());
+        let bits = x.to_bits();
+        let biased = ((bits >> 52) & 0x7ff) as i64;
+        let fraction = (bits & ((1 << 52) - 1)) as i64;
+        if biased == 0x7ff || (biased == 0 && fraction == 0) {
+            return Self {
+                mantissa: BigInt::ZERO,
+                exponent: 0,
+            };
+        }
+        let mantissa = if biased == 0 {
+            fraction
+        } else {
+            fraction | (1 << 52)
+        };
+        let trailing = mantissa.trailing_zeros();
+        let signed = if x < 0.0 { -mantissa } else { mantissa } >> trailing;
+        Self {
+            mantissa: BigInt::from(signed),
+            exponent: biased.max(1) - 1075 + i64::from(trailing) + i64::from(exponent),
+        }
+    }
+
+    fn enclosing(x: &Exact) -> Self {
+        x.clone()
+    }
+
+    fn plus(&self, other: &Self) -> Self {
+        let (low, high) = if self.exponent <= other.exponent {
+            (self, other)
+        } else {
+            (other, self)
+        };
+        if high.mantissa.sign() == Sign::NoSign {
+            return low.clone();
+        }
+        if low.mantissa.sign() == Sign::NoSign {
+            return high.clone();
+        }
+        let shift = (high.exponent - low.exponent) as u64;
+        Self {
+            mantissa: (&high.mantissa << shift) + &low.mantissa,
+            exponent: low.exponent,
+        }
+    }
+
+    fn minus(&self, other: &Self) -> Self {
+        self.plus(&other.negated())
+    }
+
+    fn times(&self, other: &Self) -> Self {
+        Self {
+            mantissa: &self.mantissa * &other.mantissa,
+            exponent: self.exponent + other.exponent,
+        }
+    }
+
+    fn negated(&self) -> Self {
+        Self {
+            mantissa: -&self.mantissa,
+            exponent: self.exponent,
+        }
+    }
+
+    fn sign(&self) -> Option<Ordering> {
+        Some(self.order())
+    }
+
+    /// Truncated to [`VALUE_BITS`]; 0 where the divisor is 0.
+    fn divided_by(&self, other: &Self) -> Self {
+        if other.mantissa.sign() == Sign::NoSign {
+            return other.clone();
+        }
+        let (dividend, exponent) = self.widened_to(VALUE_BITS + other.mantissa.bits());
+        Self {
+            mantissa: dividend / &other.mantissa,
+            exponent: exponent - other.exponent,
+        }
+    }
+
+    /// Truncated to [`VALUE_BITS`]; 0 for negative numbers.
+    fn square_root(&self) -> Self {
+        let (radicand, exponent) = self.widened_to(2 * VALUE_BITS);
+        Self {
+            mantissa: if radicand.sign() == Sign::Minus {
+                BigInt::ZERO
+            } else {
+                radicand.sqrt()
+            },
+            exponent: exponent / 2,
+        }
+    }
+
+    /// Rounded to nearest (in the subnormal range within one unit).
+    fn to_f64(&self) -> f64 {
+        let excess = self.mantissa.bits().saturating_sub(64);
+        let magnitude = self.mantissa.magnitude();
+        // 64 leading bits with a sticky last bit round like the whole number does.
+        let mut leading = (magnitude >> excess).iter_u64_digits().next().unwrap_or(0);
+        if excess > 0 && magnitude.trailing_zeros().unwrap_or(0) < excess {
+            leading |= 1;
+        }
+        let exponent = (self.exponent + excess as i64).clamp(-4000, 4000) as i32;
+        let value = libm::ldexp(leading as f64, exponent);
+        if self.mantissa.sign() == Sign::Minus {
+            -value
+        } else {
+            value
+        }
+    }
+
+    fn error(&self) -> f64 {
+        0.0
+    }
+}

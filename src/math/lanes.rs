@@ -1,0 +1,568 @@
+//! Lanes: the numbers of the inner loop.
+//!
+//! The loop is written once over [`Lanes`]: [`Single`] is f32 × 16, [`Double`] is f64 × 8, always
+//! as many logical lanes whatever the machine, so that the bits of an image do not depend on the
+//! instruction set. Every operation is IEEE-exact or fused on all of them; approximate
+//! reciprocals are not offered.
+
+use std::fmt::Debug;
+use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
+
+use fearless_simd::prelude::*;
+use fearless_simd::{f32x16, f64x8, i32x16, mask32x16, mask64x8, u32x16, u64x8};
+
+/// The scalar stored in one lane, as arrays keep it.
+pub trait Scalar: Copy + Default + Debug + PartialOrd + Send + Sync + 'static {
+    /// Unit roundoff u of round-to-nearest: 2⁻²⁴ or 2⁻⁵³.
+    const ROUNDOFF: f64;
+    /// The nearest value of this type.
+    fn from_f64(x: f64) -> Self;
+    /// Exact widening.
+    fn to_f64(self) -> f64;
+}
+
+impl Scalar for f32 {
+    const ROUNDOFF: f64 = 1.0 / 16_777_216.0;
+    #[inline(always)]
+    fn from_f64(x: f64) -> Self {
+        x as f32
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self.into()
+    }
+}
+
+impl Scalar for f64 {
+    const ROUNDOFF: f64 = 1.0 / 9_007_199_254_740_992.0;
+    #[inline(always)]
+    fn from_f64(x: f64) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+}
+
+/// One truth value a lane.
+pub trait Mask:
+    Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> + 'static
+{
+    /// Whether any lane is true.
+    fn any(self) -> bool;
+    /// Lane `i` in bit `i`.
+    fn bits(self) -> u32;
+}
+
+/// One real number a lane.
+pub trait Real:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + 'static
+{
+    /// Truth values of comparisons.
+    type Mask: Mask;
+    /// `self · a + b`, rounded once.
+    fn mul_add(self, a: Self, b: Self) -> Self;
+    /// Square root, correctly rounded.
+    fn sqrt(self) -> Self;
+    /// Absolute value.
+    fn abs(self) -> Self;
+    /// The smaller; the other operand where one is NaN.
+    fn min(self, other: Self) -> Self;
+    /// The larger; the other operand where one is NaN.
+    fn max(self, other: Self) -> Self;
+    /// Largest integer not above.
+    fn floor(self) -> Self;
+    /// Nearest integer, ties to even.
+    fn round(self) -> Self;
+    /// The magnitude of `self` with the sign of `sign`.
+    fn copysign(self, sign: Self) -> Self;
+    /// `self < other`; false for NaN, as all comparisons.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `self ≤ other`.
+    fn le(self, other: Self) -> Self::Mask;
+    /// `self > other`.
+    fn gt(self, other: Self) -> Self::Mask;
+    /// `self ≥ other`.
+    fn ge(self, other: Self) -> Self::Mask;
+    /// `self = other`.
+    fn same(self, other: Self) -> Self::Mask;
+}
+
+/// One unsigned 32-bit number a lane; arithmetic is modulo 2³².
+pub trait Int:
+    Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> + 'static
+{
+    /// Truth values of comparisons.
+    type Mask: Mask;
+    /// Sum modulo 2³².
+    fn plus(self, other: Self) -> Self;
+    /// Difference modulo 2³².
+    fn minus(self, other: Self) -> Self;
+    /// Product modulo 2³².
+    fn times(self, other: Self) -> Self;
+    /// Shift left by a constant, dropping what leaves 32 bits.
+    fn left(self, by: u32) -> Self;
+    /// Shift right by a constant.
+    fn right(self, by: u32) -> Self;
+    /// Equality.
+    fn same(self, other: Self) -> Self::Mask;
+    /// Unsigned `self < other`.
+    fn below(self, other: Self) -> Self::Mask;
+}
+
+/// A width and precision of lanes on some instruction set, as a token that makes values.
+pub trait Lanes: Copy + Send + Sync + 'static {
+    /// Scalars in arrays.
+    type Scalar: Scalar;
+    /// Reals.
+    type Real: Real<Mask = Self::Mask>;
+    /// Unsigned integers.
+    type Int: Int<Mask = Self::Mask>;
+    /// Truth values.
+    type Mask: Mask;
+    /// Number of lanes.
+    const COUNT: usize;
+    /// Bits of a uniform variate that the significand holds.
+    const UNIFORM_BITS: u32;
+
+    /// The same value, rounded to this precision, in every lane.
+    fn real(self, x: f64) -> Self::Real;
+    /// The same scalar in every lane.
+    fn splat(self, x: Self::Scalar) -> Self::Real;
+    /// The same integer in every lane.
+    fn int(self, x: u32) -> Self::Int;
+    /// The same truth value in every lane.
+    fn mask(self, x: bool) -> Self::Mask;
+    /// Lane `i` true where bit `i` is set.
+    fn mask_from_bits(self, bits: u32) -> Self::Mask;
+    /// The first `COUNT` scalars of a slice.
+    fn load(self, from: &[Self::Scalar]) -> Self::Real;
+    /// Stores into the first `COUNT` places of a slice.
+    fn store(self, x: Self::Real, to: &mut [Self::Scalar]);
+    /// The first `COUNT` integers of a slice.
+    fn load_int(self, from: &[u32]) -> Self::Int;
+    /// Stores into the first `COUNT` places of a slice.
+    fn store_int(self, x: Self::Int, to: &mut [u32]);
+    /// `table[index]` lane by lane; an index outside reads the last entry.
+    fn gather(self, table: &[Self::Scalar], index: Self::Int) -> Self::Real;
+    /// One lane.
+    fn lane(self, x: Self::Real, i: usize) -> Self::Scalar;
+    /// One lane of an integer.
+    fn int_lane(self, x: Self::Int, i: usize) -> u32;
+    /// With one lane replaced.
+    fn with_lane(self, x: Self::Real, i: usize, value: Self::Scalar) -> Self::Real;
+    /// With one lane replaced.
+    fn with_int_lane(self, x: Self::Int, i: usize, value: u32) -> Self::Int;
+    /// Lane by lane `a` where the mask is true, else `b`.
+    fn select(self, m: Self::Mask, a: Self::Real, b: Self::Real) -> Self::Real;
+    /// Lane by lane `a` where the mask is true, else `b`.
+    fn select_int(self, m: Self::Mask, a: Self::Int, b: Self::Int) -> Self::Int;
+    /// Truncation of reals in [0, 2³¹).
+    fn truncate(self, x: Self::Real) -> Self::Int;
+    /// Exact conversion of integers below 2²⁴; larger ones are rounded.
+    fn to_real(self, x: Self::Int) -> Self::Real;
+    /// Splits positive normal x = m · 2ᵉ with m in [1, 2): (m, e).
+    fn split_exponent(self, x: Self::Real) -> (Self::Real, Self::Real);
+    /// The true lanes moved to the front, in order; the rest is unspecified.
+    fn compress(self, x: Self::Real, keep: Self::Mask) -> Self::Real;
+    /// The true lanes moved to the front, in order; the rest is unspecified.
+    fn compress_int(self, x: Self::Int, keep: Self::Mask) -> Self::Int;
+
+    /// Uniform variate in [0, 1) from 32 random bits, rounded *down* so that 1 cannot occur.
+    #[inline(always)]
+    fn uniform(self, bits: Self::Int) -> Self::Real {
+        let kept = bits.right(32 - Self::UNIFORM_BITS);
+        self.to_real(kept) * self.real(1.0 / (1u64 << Self::UNIFORM_BITS) as f64)
+    }
+}
+
+/// Single precision: f32 × 16.
+#[derive(Clone, Copy)]
+pub struct Single<S: Simd>(pub S);
+
+/// Double precision: f64 × 8.
+#[derive(Clone, Copy)]
+pub struct Double<S: Simd>(pub S);
+
+macro_rules! mask_impl {
+    ($mask:ident) => {
+        impl<S: Simd> Mask for $mask<S> {
+            #[inline(always)]
+            fn any(self) -> bool {
+                self.any_true()
+            }
+            #[inline(always)]
+            fn bits(self) -> u32 {
+                self.to_bitmask() as u32
+            }
+        }
+    };
+}
+
+mask_impl!(mask32x16);
+mask_impl!(mask64x8);
+
+macro_rules! real_impl {
+    ($real:ident, $mask:ident) => {
+        impl<S: Simd> Real for $real<S> {
+            type Mask = $mask<S>;
+            #[inline(always)]
+            fn mul_add(self, a: Self, b: Self) -> Self {
+                self.mul_add_precise(a, b)
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                SimdFloat::sqrt(self)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                SimdBase::abs(self)
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                self.min_precise(other)
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                self.max_precise(other)
+            }
+            #[inline(always)]
+            fn floor(self) -> Self {
+                SimdFloat::floor(self)
+            }
+            #[inline(always)]
+            fn round(self) -> Self {
+                self.round_ties_even()
+            }
+            #[inline(always)]
+            fn copysign(self, sign: Self) -> Self {
+                SimdFloat::copysign(self, sign)
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> Self::Mask {
+                self.simd_lt(other)
+            }
+            #[inline(always)]
+            fn le(self, other: Self) -> Self::Mask {
+                self.simd_le(other)
+            }
+            #[inline(always)]
+            fn gt(self, other: Self) -> Self::Mask {
+                self.simd_gt(other)
+            }
+            #[inline(always)]
+            fn ge(self, other: Self) -> Self::Mask {
+                self.simd_ge(other)
+            }
+            #[inline(always)]
+            fn same(self, other: Self) -> Self::Mask {
+                self.simd_eq(other)
+            }
+        }
+    };
+}
+
+real_impl!(f32x16, mask32x16);
+real_impl!(f64x8, mask64x8);
+
+impl<S: Simd> Int for u32x16<S> {
+    type Mask = mask32x16<S>;
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        self + other
+    }
+    #[inline(always)]
+    fn minus(self, other: Self) -> Self {
+        self - other
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        self * other
+    }
+    #[inline(always)]
+    fn left(self, by: u32) -> Self {
+        self << by
+    }
+    #[inline(always)]
+    fn right(self, by: u32) -> Self {
+        self >> by
+    }
+    #[inline(always)]
+    fn same(self, other: Self) -> Self::Mask {
+        self.simd_eq(other)
+    }
+    #[inline(always)]
+    fn below(self, other: Self) -> Self::Mask {
+        self.simd_lt(other)
+    }
+}
+
+/// The low 32 bits of each 64-bit lane.
+#[inline(always)]
+fn low32<S: Simd>(x: u64x8<S>) -> u64x8<S> {
+    x & u64x8::splat(x.token(), 0xffff_ffff)
+}
+
+impl<S: Simd> Int for u64x8<S> {
+    type Mask = mask64x8<S>;
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        low32(self + other)
+    }
+    #[inline(always)]
+    fn minus(self, other: Self) -> Self {
+        low32(self - other)
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        low32(self * other)
+    }
+    #[inline(always)]
+    fn left(self, by: u32) -> Self {
+        low32(self << by)
+    }
+    #[inline(always)]
+    fn right(self, by: u32) -> Self {
+        self >> by
+    }
+    #[inline(always)]
+    fn same(self, other: Self) -> Self::Mask {
+        self.simd_eq(other)
+    }
+    #[inline(always)]
+    fn below(self, other: Self) -> Self::Mask {
+        self.simd_lt(other)
+    }
+}
+
+impl<S: Simd> Lanes for Single<S> {
+    type Scalar = f32;
+    type Real = f32x16<S>;
+    type Int = u32x16<S>;
+    type Mask = mask32x16<S>;
+    const COUNT: usize = 16;
+    const UNIFORM_BITS: u32 = 24;
+
+    #[inline(always)]
+    fn real(self, x: f64) -> Self::Real {
+        f32x16::splat(self.0, x as f32)
+    }
+    #[inline(always)]
+    fn splat(self, x: f32) -> Self::Real {
+        f32x16::splat(self.0, x)
+    }
+    #[inline(always)]
+    fn int(self, x: u32) -> Self::Int {
+        u32x16::splat(self.0, x)
+    }
+    #[inline(always)]
+    fn mask(self, x: bool) -> Self::Mask {
+        mask32x16::splat(self.0, x)
+    }
+    #[inline(always)]
+    fn mask_from_bits(self, bits: u32) -> Self::Mask {
+        mask32x16::from_bitmask(self.0, bits.into())
+    }
+    #[inline(always)]
+    fn load(self, from: &[f32]) -> Self::Real {
+        f32x16::from_slice(self.0, &from[..16])
+    }
+    #[inline(always)]
+    fn store(self, x: Self::Real, to: &mut [f32]) {
+        x.store_slice(&mut to[..16]);
+    }
+    #[inline(always)]
+    fn load_int(self, from: &[u32]) -> Self::Int {
+        u32x16::from_slice(self.0, &from[..16])
+    }
+    #[inline(always)]
+    fn store_int(self, x: Self::Int, to: &mut [u32]) {
+        x.store_slice(&mut to[..16]);
+    }
+    #[inline(always)]
+    fn gather(self, table: &[f32], index: Self::Int) -> Self::Real {
+        let last = table.len() - 1;
+        let index: [u32; 16] = index.into();
+        let mut out = [0.0; 16];
+        for (value, i) in out.iter_mut().zip(index) {
+            *value = table[(i as usize).min(last)];
+        }
+        f32x16::simd_from(self.0, out)
+    }
+    #[inline(always)]
+    fn lane(self, x: Self::Real, i: usize) -> f32 {
+        x[i & 15]
+    }
+    #[inline(always)]
+    fn int_lane(self, x: Self::Int, i: usize) -> u32 {
+        x[i & 15]
+    }
+    #[inline(always)]
+    fn with_lane(self, mut x: Self::Real, i: usize, value: f32) -> Self::Real {
+        x[i & 15] = value;
+        x
+    }
+    #[inline(always)]
+    fn with_int_lane(self, mut x: Self::Int, i: usize, value: u32) -> Self::Int {
+        x[i & 15] = value;
+        x
+    }
+    #[inline(always)]
+    fn select(self, m: Self::Mask, a: Self::Real, b: Self::Real) -> Self::Real {
+        m.select(a, b)
+    }
+    #[inline(always)]
+    fn select_int(self, m: Self::Mask, a: Self::Int, b: Self::Int) -> Self::Int {
+        m.select(a, b)
+    }
+    #[inline(always)]
+    fn truncate(self, x: Self::Real) -> Self::Int {
+        let signed: i32x16<S> = x.to_int();
+        signed.bitcast()
+    }
+    #[inline(always)]
+    fn to_real(self, x: Self::Int) -> Self::Real {
+        let signed: i32x16<S> = x.bitcast();
+        signed.to_float()
+    }
+    #[inline(always)]
+    fn split_exponent(self, x: Self::Real) -> (Self::Real, Self::Real) {
+        let bits: u32x16<S> = x.bitcast();
+        let mantissa = (bits & self.int(0x007f_ffff)) | self.int(0x3f80_0000);
+        let exponent = self.to_real(bits.right(23)) - self.real(127.0);
+        (mantissa.bitcast(), exponent)
+    }
+    #[inline(always)]
+    fn compress(self, x: Self::Real, keep: Self::Mask) -> Self::Real {
+        x.compress(keep)
+    }
+    #[inline(always)]
+    fn compress_int(self, x: Self::Int, keep: Self::Mask) -> Self::Int {
+        x.compress(keep)
+    }
+}
+
+impl<S: Simd> Lanes for Double<S> {
+    type Scalar = f64;
+    type Real = f64x8<S>;
+    type Int = u64x8<S>;
+    type Mask = mask64x8<S>;
+    const COUNT: usize = 8;
+    const UNIFORM_BITS: u32 = 32;
+
+    #[inline(always)]
+    fn real(self, x: f64) -> Self::Real {
+        f64x8::splat(self.0, x)
+    }
+    #[inline(always)]
+    fn splat(self, x: f64) -> Self::Real {
+        f64x8::splat(self.0, x)
+    }
+    #[inline(always)]
+    fn int(self, x: u32) -> Self::Int {
+        u64x8::splat(self.0, x.into())
+    }
+    #[inline(always)]
+    fn mask(self, x: bool) -> Self::Mask {
+        mask64x8::splat(self.0, x)
+    }
+    #[inline(always)]
+    fn mask_from_bits(self, bits: u32) -> Self::Mask {
+        mask64x8::from_bitmask(self.0, bits.into())
+    }
+    #[inline(always)]
+    fn load(self, from: &[f64]) -> Self::Real {
+        f64x8::from_slice(self.0, &from[..8])
+    }
+    #[inline(always)]
+    fn store(self, x: Self::Real, to: &mut [f64]) {
+        x.store_slice(&mut to[..8]);
+    }
+    #[inline(always)]
+    fn load_int(self, from: &[u32]) -> Self::Int {
+        let mut wide = [0u64; 8];
+        for (w, &x) in wide.iter_mut().zip(&from[..8]) {
+            *w = x.into();
+        }
+        u64x8::simd_from(self.0, wide)
+    }
+    #[inline(always)]
+    fn store_int(self, x: Self::Int, to: &mut [u32]) {
+        let wide: [u64; 8] = x.into();
+        for (&w, y) in wide.iter().zip(&mut to[..8]) {
+            *y = w as u32;
+        }
+    }
+    #[inline(always)]
+    fn gather(self, table: &[f64], index: Self::Int) -> Self::Real {
+        let last = table.len() - 1;
+        let index: [u64; 8] = index.into();
+        let mut out = [0.0; 8];
+        for (value, i) in out.iter_mut().zip(index) {
+            *value = table[(i as usize).min(last)];
+        }
+        f64x8::simd_from(self.0, out)
+    }
+    #[inline(always)]
+    fn lane(self, x: Self::Real, i: usize) -> f64 {
+        x[i & 7]
+    }
+    #[inline(always)]
+    fn int_lane(self, x: Self::Int, i: usize) -> u32 {
+        x[i & 7] as u32
+    }
+    #[inline(always)]
+    fn with_lane(self, mut x: Self::Real, i: usize, value: f64) -> Self::Real {
+        x[i & 7] = value;
+        x
+    }
+    #[inline(always)]
+    fn with_int_lane(self, mut x: Self::Int, i: usize, value: u32) -> Self::Int {
+        x[i & 7] = value.into();
+        x
+    }
+    #[inline(always)]
+    fn select(self, m: Self::Mask, a: Self::Real, b: Self::Real) -> Self::Real {
+        m.select(a, b)
+    }
+    #[inline(always)]
+    fn select_int(self, m: Self::Mask, a: Self::Int, b: Self::Int) -> Self::Int {
+        m.select(a, b)
+    }
+    #[inline(always)]
+    fn truncate(self, x: Self::Real) -> Self::Int {
+        // Adding 2⁵² puts the integer part into the low bits of the significand.
+        let shifted = SimdFloat::floor(x) + self.real(4_503_599_627_370_496.0);
+        let bits: u64x8<S> = shifted.bitcast();
+        low32(bits)
+    }
+    #[inline(always)]
+    fn to_real(self, x: Self::Int) -> Self::Real {
+        let shifted = x | u64x8::splat(self.0, 0x4330_0000_0000_0000);
+        let real: f64x8<S> = shifted.bitcast();
+        real - self.real(4_503_599_627_370_496.0)
+    }
+    #[inline(always)]
+    fn split_exponent(self, x: Self::Real) -> (Self::Real, Self::Real) {
+        let bits: u64x8<S> = x.bitcast();
+        let mantissa = (bits & u64x8::splat(self.0, 0x000f_ffff_ffff_ffff))
+            | u64x8::splat(self.0, 0x3ff0_0000_0000_0000);
+        let exponent = self.to_real(bits.right(52)) - self.real(1023.0);
+        (mantissa.bitcast(), exponent)
+    }
+    #[inline(always)]
+    fn compress(self, x: Self::Real, keep: Self::Mask) -> Self::Real {
+        x.compress(keep)
+    }
+    #[inline(always)]
+    fn compress_int(self, x: Self::Int, keep: Self::Mask) -> Self::Int {
+        x.compress(keep)
+    }
+}

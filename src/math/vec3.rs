@@ -1,0 +1,211 @@
+//! Vectors of three lane reals.
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+use glam::DVec3;
+
+use super::lanes::{Lanes, Real};
+
+/// Three reals a lane.
+#[derive(Clone, Copy)]
+pub struct Vec3<R> {
+    /// First component.
+    pub x: R,
+    /// Second component.
+    pub y: R,
+    /// Third component.
+    pub z: R,
+}
+
+impl<R: Real> Vec3<R> {
+    /// From components.
+    #[inline(always)]
+    pub fn new(x: R, y: R, z: R) -> Self {
+        Self { x, y, z }
+    }
+
+    /// The same vector, rounded, in every lane.
+    #[inline(always)]
+    pub fn splat<L: Lanes<Real = R>>(l: L, v: DVec3) -> Self {
+        Self::new(l.real(v.x), l.real(v.y), l.real(v.z))
+    }
+
+    /// Inner product.
+    #[inline(always)]
+    pub fn dot(self, b: Self) -> R {
+        self.x.mul_add(b.x, self.y.mul_add(b.y, self.z * b.z))
+    }
+
+    /// Squared length.
+    #[inline(always)]
+    pub fn length_squared(self) -> R {
+        self.dot(self)
+    }
+
+    /// Cross product.
+    #[inline(always)]
+    pub fn cross(self, b: Self) -> Self {
+        Self::new(
+            self.y.mul_add(b.z, -(self.z * b.y)),
+            self.z.mul_add(b.x, -(self.x * b.z)),
+            self.x.mul_add(b.y, -(self.y * b.x)),
+        )
+    }
+
+    /// Every component times a scalar.
+    #[inline(always)]
+    pub fn scale(self, s: R) -> Self {
+        Self::new(self.x * s, self.y * s, self.z * s)
+    }
+
+    /// `self + d · t`.
+    #[inline(always)]
+    pub fn along(self, d: Self, t: R) -> Self {
+        Self::new(
+            d.x.mul_add(t, self.x),
+            d.y.mul_add(t, self.y),
+            d.z.mul_add(t, self.z),
+        )
+    }
+
+    /// Unit vector of the same direction.
+    #[inline(always)]
+    pub fn normalized<L: Lanes<Real = R>>(self, l: L) -> Self {
+        self.scale(l.real(1.0) / self.length_squared().sqrt())
+    }
+
+    /// Largest magnitude of a component.
+    #[inline(always)]
+    pub fn max_abs(self) -> R {
+        self.x.abs().max(self.y.abs()).max(self.z.abs())
+    }
+
+    /// Lane by lane `a` where the mask is true, else `b`.
+    #[inline(always)]
+    pub fn select<L: Lanes<Real = R>>(l: L, m: L::Mask, a: Self, b: Self) -> Self {
+        Self::new(
+            l.select(m, a.x, b.x),
+            l.select(m, a.y, b.y),
+            l.select(m, a.z, b.z),
+        )
+    }
+
+    /// Orthonormal tangents of a unit normal: (s, t) with s × t = n (Duff et al. 2017,
+    /// "Building an Orthonormal Basis, Revisited", JCGT 6(1), listing 3).
+    #[inline(always)]
+    pub fn frame<L: Lanes<Real = R>>(self, l: L) -> (Self, Self) {
+        let one = l.real(1.0);
+        let sign = one.copysign(self.z);
+        let a = -(one / (sign + self.z));
+        let b = self.x * self.y * a;
+        let s = Self::new(
+            (sign * self.x * self.x).mul_add(a, one),
+            sign * b,
+            -(sign * self.x),
+        );
+        let t = Self::new(b, (self.y * self.y).mul_add(a, sign), -self.y);
+        (s, t)
+    }
+}
+
+impl<R: Real> Add for Vec3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, b: Self) -> Self {
+        Self::new(self.x + b.x, self.y + b.y, self.z + b.z)
+    }
+}
+
+impl<R: Real> Sub for Vec3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        Self::new(self.x - b.x, self.y - b.y, self.z - b.z)
+    }
+}
+
+impl<R: Real> Mul for Vec3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, b: Self) -> Self {
+        Self::new(self.x * b.x, self.y * b.y, self.z * b.z)
+    }
+}
+
+impl<R: Real> Neg for Vec3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.y, -self.z)
+    }
+}
+
+/// An affine map whose rows are scalars, applied to lanes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rows<T> {
+    /// Rows of the 3×4 matrix.
+    pub rows: [[T; 4]; 3],
+}
+
+impl<T: super::lanes::Scalar> Rows<T> {
+    /// Rounds a 3×4 matrix of f64.
+    pub fn from_f64(rows: &[[f64; 4]; 3]) -> Self {
+        Self {
+            rows: rows.map(|row| row.map(T::from_f64)),
+        }
+    }
+
+    /// Linear part of row `i` times a vector.
+    #[inline(always)]
+    pub fn row_dot<L: Lanes<Scalar = T>>(&self, l: L, i: usize, v: Vec3<L::Real>) -> L::Real {
+        let r = &self.rows[i];
+        l.splat(r[0]).mul_add(
+            v.x,
+            l.splat(r[1]).mul_add(v.y, l.splat(r[2]) * v.z),
+        )
+    }
+
+    /// Row `i` of the image of a point.
+    #[inline(always)]
+    pub fn row_point<L: Lanes<Scalar = T>>(&self, l: L, i: usize, p: Vec3<L::Real>) -> L::Real {
+        let r = &self.rows[i];
+        l.splat(r[0]).mul_add(
+            p.x,
+            l.splat(r[1])
+                .mul_add(p.y, l.splat(r[2]).mul_add(p.z, l.splat(r[3]))),
+        )
+    }
+
+    /// Image of a point.
+    #[inline(always)]
+    pub fn point<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> Vec3<L::Real> {
+        Vec3::new(
+            self.row_point(l, 0, p),
+            self.row_point(l, 1, p),
+            self.row_point(l, 2, p),
+        )
+    }
+
+    /// Image of a vector.
+    #[inline(always)]
+    pub fn vector<L: Lanes<Scalar = T>>(&self, l: L, v: Vec3<L::Real>) -> Vec3<L::Real> {
+        Vec3::new(
+            self.row_dot(l, 0, v),
+            self.row_dot(l, 1, v),
+            self.row_dot(l, 2, v),
+        )
+    }
+
+    /// Transpose of the linear part times a vector: normals, when these rows are the inverse.
+    #[inline(always)]
+    pub fn transposed<L: Lanes<Scalar = T>>(&self, l: L, v: Vec3<L::Real>) -> Vec3<L::Real> {
+        let column = |j: usize| {
+            l.splat(self.rows[0][j]).mul_add(
+                v.x,
+                l.splat(self.rows[1][j])
+                    .mul_add(v.y, l.splat(self.rows[2][j]) * v.z),
+            )
+        };
+        Vec3::new(column(0), column(1), column(2))
+    }
+}

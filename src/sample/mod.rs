@@ -1,0 +1,46 @@
+//! Where random numbers come from, and what is done with them.
+//!
+//! All randomness is counter-based: the numbers of sample (seed, x, y, index) are a pure function
+//! of those and of the *name* of the dimension ([`Slot`]), so a sample can be computed alone, in
+//! any order, and leaving a dimension out moves no other.
+
+pub mod hash;
+pub mod mis;
+pub mod permute;
+pub mod sequence;
+pub mod sobol;
+pub mod warp;
+
+use crate::math::lanes::Lanes;
+
+/// Names of pairs of random dimensions. A bounce's slots repeat with [`Slot::STRIDE`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Slot {
+    /// Position in the pixel.
+    Pixel = 0,
+    /// Hero wavelength.
+    Wavelength = 1,
+    /// Position on the lens.
+    Lens = 2,
+    /// Point on the chosen light.
+    Light = 3,
+    /// Direction of the scattered ray.
+    Bsdf = 4,
+    /// Which light; which lobe of the surface.
+    Choice = 5,
+    /// Russian roulette; whether a path goes on beyond `max_depth`.
+    Roulette = 6,
+}
+
+impl Slot {
+    /// Distance between the slots of one bounce and the next.
+    pub const STRIDE: u32 = 8;
+
+    /// The number that names this slot at a bounce.
+    #[inline(always)]
+    pub fn at<L: Lanes>(self, l: L, depth: L::Int) -> L::Int {
+        use crate::math::lanes::Int;
+        depth.times(l.int(Self::STRIDE)).plus(l.int(self as u32))
+    }
+}

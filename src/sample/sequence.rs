@@ -1,0 +1,221 @@
+//! The samplers: one description, asked by slot.
+
+use super::hash::{Keys, mix, pcg4d};
+use super::permute::permute;
+use super::{Slot, sobol};
+use crate::math::lanes::{Int, Lanes, Real};
+use crate::scene::SamplerKind;
+
+/// Which points a render uses, and how many of them a replicate may see.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sequence {
+    kind: SamplerKind,
+    keys: Keys,
+    /// Points of one replicate.
+    points: u32,
+    /// Independent scrambles a pixel.
+    replicates: u32,
+    /// Significant bits of an index within a replicate.
+    bits: u32,
+    /// Strata across and down, for `stratified`.
+    strata: [u32; 2],
+}
+
+/// What identifies one sample in lanes: which scramble, and which of its points.
+#[derive(Clone, Copy)]
+pub struct Identity<L: Lanes> {
+    /// Hash of seed, pixel and replicate.
+    pub key: L::Int,
+    /// Index within the replicate.
+    pub index: L::Int,
+}
+
+/// The numbers that a camera ray needs.
+#[derive(Clone, Copy)]
+pub struct CameraSample<L: Lanes> {
+    /// Position in the pixel, [0, 1)².
+    pub pixel: [L::Real; 2],
+    /// Hero wavelength variate.
+    pub wavelength: L::Real,
+    /// Position on the lens, [0, 1)²; meaningless without a lens.
+    pub lens: [L::Real; 2],
+}
+
+/// Strata m × n ≥ count, nearly square, exactly `count` where it has a fitting divisor.
+fn strata(count: u32) -> [u32; 2] {
+    let root = f64::from(count).sqrt();
+    let exact = (1..=root as u32).rev().find(|a| count.is_multiple_of(*a));
+    match exact {
+        // At most twice as long as wide.
+        Some(a) if 2 * u64::from(a) * u64::from(a) >= u64::from(count) => [count / a, a],
+        _ => {
+            let a = root.ceil() as u32;
+            [a, count.div_ceil(a)]
+        }
+    }
+}
+
+impl Sequence {
+    /// A sampler for `spp` samples a pixel in `replicates` independent scrambles.
+    pub fn new(kind: SamplerKind, seed: u64, spp: u32, replicates: u32) -> Self {
+        let points = spp.div_ceil(replicates).max(1);
+        Self {
+            kind,
+            keys: Keys::new(seed),
+            points,
+            replicates,
+            bits: 32 - (points - 1).leading_zeros(),
+            strata: strata(points),
+        }
+    }
+
+    /// Independent scrambles a pixel.
+    pub fn replicates(&self) -> u32 {
+        self.replicates
+    }
+
+    /// Identity of samples of pixels; sample i belongs to replicate i mod K, so that every prefix
+    /// of the samples shares them out evenly.
+    #[inline(always)]
+    pub fn identity<L: Lanes>(
+        &self,
+        l: L,
+        x: L::Int,
+        y: L::Int,
+        replicate: L::Int,
+        index: L::Int,
+    ) -> Identity<L> {
+        Identity {
+            key: self.keys.pixel(l, x, y, replicate),
+            index,
+        }
+    }
+
+    /// The camera's numbers, stratified together.
+    #[inline(always)]
+    pub fn camera<L: Lanes>(&self, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
+        let seed = |slot: Slot, component: u32| {
+            mix(l, id.key.plus(l.int(0x9e37_79b9u32.wrapping_mul(2 * slot as u32 + component + 1))))
+        };
+        let zero = l.real(0.0);
+        match self.kind {
+            SamplerKind::Sobol | SamplerKind::Center => {
+                let coordinate = |dimension: usize, slot: Slot, component: u32| {
+                    let digits = sobol::digits(l, dimension, id.index, self.bits);
+                    l.uniform(sobol::scrambled(l, digits, seed(slot, component)))
+                };
+                let pixel = if self.kind == SamplerKind::Center {
+                    [l.real(0.5); 2]
+                } else {
+                    [coordinate(0, Slot::Pixel, 0), coordinate(1, Slot::Pixel, 1)]
+                };
+                CameraSample {
+                    pixel,
+                    wavelength: coordinate(2, Slot::Wavelength, 0),
+                    lens: if lens {
+                        [coordinate(3, Slot::Lens, 0), coordinate(4, Slot::Lens, 1)]
+                    } else {
+                        [zero; 2]
+                    },
+                }
+            }
+            SamplerKind::Independent | SamplerKind::Stratified => {
+                let depth = l.int(0);
+                let wavelength = if self.kind == SamplerKind::Stratified {
+                    let slot = Slot::Wavelength.at(l, depth);
+                    let stratum = permute(l, id.index, self.points, self.slot_seed(l, id, slot));
+                    let [jitter, ..] = self.independent(l, id, slot);
+                    self.jittered(l, stratum, jitter, self.points)
+                } else {
+                    self.independent(l, id, Slot::Wavelength.at(l, depth))[0]
+                };
+                CameraSample {
+                    pixel: self.pair(l, id, Slot::Pixel.at(l, depth)),
+                    wavelength,
+                    lens: if lens {
+                        self.pair(l, id, Slot::Lens.at(l, depth))
+                    } else {
+                        [zero; 2]
+                    },
+                }
+            }
+        }
+    }
+
+    /// Two numbers of a padded slot.
+    #[inline(always)]
+    pub fn pair<L: Lanes>(&self, l: L, id: Identity<L>, slot: L::Int) -> [L::Real; 2] {
+        match self.kind {
+            SamplerKind::Sobol | SamplerKind::Center => {
+                let base = self.slot_seed(l, id, slot);
+                let index = sobol::shuffled(l, id.index, base);
+                let first = sobol::scrambled(l, index, mix(l, base.plus(l.int(0x68bc_21eb))));
+                let digits = sobol::digits(l, 1, index, 32);
+                let second = sobol::scrambled(l, digits, mix(l, base.plus(l.int(0x02e5_be93))));
+                [l.uniform(first), l.uniform(second)]
+            }
+            SamplerKind::Stratified => {
+                let [across, down] = self.strata;
+                let stratum = permute(
+                    l,
+                    id.index,
+                    across * down,
+                    self.slot_seed(l, id, slot),
+                );
+                let [u, v, ..] = self.independent(l, id, slot);
+                let position = l.to_real(stratum);
+                // Exact for the at most 2²⁴ strata: the quotient is at least ½/across away from
+                // the integer that would be rounded to.
+                let row = ((position + l.real(0.5)) / l.real(across.into())).floor();
+                let column = (-row).mul_add(l.real(across.into()), position);
+                [
+                    self.below_one(l, (column + u) / l.real(across.into())),
+                    self.below_one(l, (row + v) / l.real(down.into())),
+                ]
+            }
+            SamplerKind::Independent => {
+                let [u, v, ..] = self.independent(l, id, slot);
+                [u, v]
+            }
+        }
+    }
+
+    /// One number of a padded slot.
+    #[inline(always)]
+    pub fn single<L: Lanes>(&self, l: L, id: Identity<L>, slot: L::Int) -> L::Real {
+        match self.kind {
+            SamplerKind::Sobol | SamplerKind::Center => {
+                let base = self.slot_seed(l, id, slot);
+                let index = sobol::shuffled(l, id.index, base);
+                l.uniform(sobol::scrambled(l, index, mix(l, base.plus(l.int(0x68bc_21eb)))))
+            }
+            SamplerKind::Stratified => {
+                let stratum = permute(l, id.index, self.points, self.slot_seed(l, id, slot));
+                let [jitter, ..] = self.independent(l, id, slot);
+                self.jittered(l, stratum, jitter, self.points)
+            }
+            SamplerKind::Independent => self.independent(l, id, slot)[0],
+        }
+    }
+
+    #[inline(always)]
+    fn slot_seed<L: Lanes>(&self, l: L, id: Identity<L>, slot: L::Int) -> L::Int {
+        mix(l, id.key ^ slot.times(l.int(0x9e37_79b9)))
+    }
+
+    #[inline(always)]
+    fn independent<L: Lanes>(&self, l: L, id: Identity<L>, slot: L::Int) -> [L::Real; 4] {
+        pcg4d(l, [id.key, id.index, slot, l.int(0x2545_f491)]).map(|bits| l.uniform(bits))
+    }
+
+    #[inline(always)]
+    fn jittered<L: Lanes>(&self, l: L, stratum: L::Int, u: L::Real, count: u32) -> L::Real {
+        self.below_one(l, (l.to_real(stratum) + u) / l.real(count.into()))
+    }
+
+    /// Sums such as (n − 1 + u)/n may round up to 1.
+    #[inline(always)]
+    fn below_one<L: Lanes>(&self, l: L, u: L::Real) -> L::Real {
+        u.min(l.real(1.0 - 1.0 / (1u64 << L::UNIFORM_BITS) as f64))
+    }
+}

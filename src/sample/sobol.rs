@@ -1,0 +1,124 @@
+//! Owen-scrambled Sobol' points in lanes.
+//!
+//! The scrambling is hash-based (B. Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4),
+//! 2020) on bit-reversed numbers, where "each digit depends on the more significant ones" becomes
+//! "each bit depends on the lower ones", which is what multiplication does.
+
+use crate::math::lanes::{Int, Lanes};
+
+/// Dimensions of the joint set of a camera sample: pixel x, y, wavelength, lens u, v.
+pub const DIMENSIONS: usize = 5;
+
+/// Generator matrices of the dimensions beyond the second, column by column with the first digit
+/// in bit 0 (bit-reversed), from primitive polynomials and initial numbers m of S. Joe and
+/// F. Kuo, "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci.
+/// Comput. 30 (2008), table `new-joe-kuo-6`, d = 3, 4, 5.
+const COLUMNS: [[u32; 32]; DIMENSIONS - 2] = [
+    columns(2, 1, [1, 3, 0]),
+    columns(3, 1, [1, 3, 1]),
+    columns(3, 2, [1, 1, 1]),
+];
+
+/// The 32 direction numbers for a primitive polynomial of degree `s` with inner coefficients `a`
+/// and initial numbers `m` (P. Bratley and B. Fox, ACM TOMS 14 (1988), Algorithm 659).
+const fn columns(s: usize, a: u32, m: [u32; 3]) -> [u32; 32] {
+    let mut v = [0u32; 32];
+    let mut k = 0;
+    while k < 32 {
+        if k < s {
+            v[k] = m[k] << (31 - k);
+        } else {
+            v[k] = v[k - s] ^ (v[k - s] >> s);
+            let mut j = 1;
+            while j < s {
+                if (a >> (s - 1 - j)) & 1 == 1 {
+                    v[k] ^= v[k - j];
+                }
+                j += 1;
+            }
+        }
+        k += 1;
+    }
+    let mut k = 0;
+    while k < 32 {
+        v[k] = v[k].reverse_bits();
+        k += 1;
+    }
+    v
+}
+
+/// The bits of each lane in reverse order.
+#[inline(always)]
+pub fn reverse_bits<L: Lanes>(l: L, x: L::Int) -> L::Int {
+    let swap = |x: L::Int, by: u32, mask: u32| {
+        (x.right(by) & l.int(mask)) | (x & l.int(mask)).left(by)
+    };
+    let x = swap(x, 1, 0x5555_5555);
+    let x = swap(x, 2, 0x3333_3333);
+    let x = swap(x, 4, 0x0f0f_0f0f);
+    let x = swap(x, 8, 0x00ff_00ff);
+    x.right(16) | x.left(16)
+}
+
+/// A seeded permutation of 32-bit numbers in which bit k depends on bits 0 … k alone, each flip
+/// close to random: Owen's nested uniform scramble of bit-reversed numbers (S. Laine and
+/// T. Karras 2011; round constants of N. Vegdahl, "Building a Better LK Hash", 2021).
+#[inline(always)]
+pub fn nested_scramble<L: Lanes>(l: L, x: L::Int, seed: L::Int) -> L::Int {
+    let x = x ^ x.times(l.int(0x3d20_adea));
+    let x = x.plus(seed);
+    let x = x.times(seed.right(16) | l.int(1));
+    let x = x ^ x.times(l.int(0x0552_6c56));
+    x ^ x.times(l.int(0x53a2_2864))
+}
+
+/// Digits of the second Sobol' dimension, first digit in bit 0: the matrix is Pascal's triangle
+/// modulo 2, digit k is the sum of the index bits j with C(j, k) odd, and by Lucas's theorem that
+/// is a sum over supersets, done one bit of the position at a time.
+#[inline(always)]
+fn second_dimension<L: Lanes>(l: L, index: L::Int) -> L::Int {
+    let x = index ^ (index.right(1) & l.int(0x5555_5555));
+    let x = x ^ (x.right(2) & l.int(0x3333_3333));
+    let x = x ^ (x.right(4) & l.int(0x0f0f_0f0f));
+    let x = x ^ (x.right(8) & l.int(0x00ff_00ff));
+    x ^ x.right(16)
+}
+
+/// Digits of any of the [`DIMENSIONS`], first digit in bit 0, for indices below 2^`bits`.
+#[inline(always)]
+pub fn digits<L: Lanes>(l: L, dimension: usize, index: L::Int, bits: u32) -> L::Int {
+    match dimension {
+        0 => index,
+        1 => second_dimension(l, index),
+        _ => {
+            let columns = &COLUMNS[dimension - 2];
+            let mut sum = l.int(0);
+            for bit in 0..bits.min(32) {
+                let chosen = index.right(bit) & l.int(1);
+                // 0 or all ones.
+                let mask = l.int(0).minus(chosen);
+                sum = sum ^ (mask & l.int(columns[bit as usize]));
+            }
+            sum
+        }
+    }
+}
+
+/// 32 random bits of a scrambled coordinate, most significant first.
+#[inline(always)]
+pub fn scrambled<L: Lanes>(l: L, digits: L::Int, seed: L::Int) -> L::Int {
+    reverse_bits(l, nested_scramble(l, digits, seed))
+}
+
+/// The index in a random order that keeps every aligned block of 2ᵏ indices together, so that
+/// prefixes stay well stratified (Burley 2020, section 5).
+#[inline(always)]
+pub fn shuffled<L: Lanes>(l: L, index: L::Int, seed: L::Int) -> L::Int {
+    reverse_bits(l, nested_scramble(l, reverse_bits(l, index), seed))
+}
+
+/// The same from an index whose bits are already reversed.
+#[inline(always)]
+pub fn shuffled_reversed<L: Lanes>(l: L, reversed_index: L::Int, seed: L::Int) -> L::Int {
+    reverse_bits(l, nested_scramble(l, reversed_index, seed))
+}

@@ -1,0 +1,98 @@
+//! The capped cylinder x² + y² ≤ 1, |z| ≤ 1 in lanes.
+
+use super::{LaneRay, LaneShape, Span, reach, slab};
+use crate::math::lanes::{Lanes, Mask, Real, Scalar};
+use crate::math::vec3::Vec3;
+
+/// The side as a circle about the foot of the perpendicular in the plane (as for the sphere, with
+/// √2 in place of √3), the caps as a slab.
+#[inline(always)]
+pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
+    let u = <L::Scalar as Scalar>::ROUNDOFF;
+    let one = l.real(1.0);
+    let o = shape.inverse.point(l, ray.origin);
+    let d = shape.inverse.vector(l, ray.direction);
+    let e0 = shape.origin_error(l, ray);
+    let dd = l.splat(shape.direction_error);
+
+    let across = d.x.mul_add(d.x, d.y * d.y);
+    let inverse_square = one / across;
+    let inverse_length = inverse_square.sqrt();
+    let foot_t = -(o.x.mul_add(d.x, o.y * d.y) * inverse_square);
+    let (fx, fy) = (d.x.mul_add(foot_t, o.x), d.y.mul_add(foot_t, o.y));
+    let squared = fx.mul_add(fx, fy * fy);
+    let c = one - squared;
+    let e = foot_t.abs().mul_add(dd, e0);
+    let c_error = (e * e).mul_add(
+        l.real(16.0),
+        e.mul_add(l.real(8.0), l.real(8.0 * u)) * squared.max(one),
+    );
+    let root = c.max(l.real(0.0)).sqrt();
+    let half = root * inverse_length;
+    let mut side_error = (c_error / root + e * l.real(4.0)).mul_add(
+        inverse_length,
+        (foot_t.abs() + half) * l.real(8.0 * u),
+    );
+    let mut side_near = foot_t - half;
+    let mut side_far = foot_t + half;
+    let mut side_hit = c.gt(c_error);
+    let mut side_miss = c.lt(-c_error);
+    // Along the axis the relative error of the direction across it is unbounded.
+    let parallel = !across.sqrt().gt(dd * l.real(8.0));
+    if parallel.any() {
+        let drift = (across.sqrt() + dd * l.real(2.0))
+            .mul_add(reach(l, o, d), e0 * l.real(2.0))
+            * l.real(1.0 + 1e-6);
+        let radius = o.x.mul_add(o.x, o.y * o.y).sqrt();
+        let far = l.real(1e30);
+        side_near = l.select(parallel, -far, side_near);
+        side_far = l.select(parallel, far, side_far);
+        side_error = l.select(parallel, l.real(0.0), side_error);
+        let inside = (radius + drift).lt(one);
+        let outside = (radius - drift).gt(one);
+        side_hit = (side_hit & !parallel) | (parallel & inside);
+        side_miss = (side_miss & !parallel) | (parallel & outside);
+    }
+
+    let caps = slab(l, o.z, d.z, e0, dd, || reach(l, o, d));
+    let near = side_near.max(caps.near);
+    let far = side_far.min(caps.far);
+    let latest_entry = (side_near + side_error).max(caps.near + caps.error);
+    let earliest_entry = (side_near - side_error).max(caps.near - caps.error);
+    let earliest_exit = (side_far - side_error).min(caps.far - caps.error);
+    let latest_exit = (side_far + side_error).min(caps.far + caps.error);
+    let error = (latest_entry - near)
+        .max(near - earliest_entry)
+        .max((latest_exit - far).max(far - earliest_exit));
+    Span {
+        near,
+        far,
+        error,
+        hit: side_hit & latest_entry.lt(earliest_exit) & !caps.lost & !caps.outside,
+        miss: side_miss
+            | caps.outside
+            | (side_hit & earliest_entry.gt(latest_exit) & !caps.lost),
+    }
+}
+
+/// A cap where |z| exceeds the distance from the axis, else the side.
+#[inline(always)]
+pub fn surface<L: Lanes>(l: L, local: Vec3<L::Real>) -> (Vec3<L::Real>, Vec3<L::Real>) {
+    let radius = local.x.mul_add(local.x, local.y * local.y).sqrt();
+    let cap = local.z.abs().gt(radius);
+    let zero = l.real(0.0);
+    let face = l.real(1.0).copysign(local.z);
+    let (x, y) = (local.x / radius, local.y / radius);
+    (
+        Vec3::new(
+            l.select(cap, local.x, x),
+            l.select(cap, local.y, y),
+            l.select(cap, face, local.z),
+        ),
+        Vec3::new(
+            l.select(cap, zero, x),
+            l.select(cap, zero, y),
+            l.select(cap, face, zero),
+        ),
+    )
+}

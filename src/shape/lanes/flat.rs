@@ -1,0 +1,108 @@
+//! Rectangle, disk and plane in lanes: z = 0 and a test of where.
+
+use super::{LaneRay, LaneShape, Span};
+use crate::math::lanes::{Lanes, Real, Scalar};
+
+/// The part of z = 0 that a flat shape covers.
+pub trait Outline {
+    /// Whether (x, y), each within `error`, is certainly inside and certainly outside.
+    fn contains<L: Lanes>(
+        l: L,
+        x: L::Real,
+        y: L::Real,
+        error: [L::Real; 2],
+    ) -> (L::Mask, L::Mask);
+}
+
+/// |x| ≤ 1, |y| ≤ 1.
+pub struct Rectangle;
+
+impl Outline for Rectangle {
+    #[inline(always)]
+    fn contains<L: Lanes>(
+        l: L,
+        x: L::Real,
+        y: L::Real,
+        [ex, ey]: [L::Real; 2],
+    ) -> (L::Mask, L::Mask) {
+        let one = l.real(1.0);
+        let (ax, ay) = (x.abs(), y.abs());
+        (
+            (ax + ex).lt(one) & (ay + ey).lt(one),
+            (ax - ex).gt(one) | (ay - ey).gt(one),
+        )
+    }
+}
+
+/// x² + y² ≤ 1.
+pub struct Disk;
+
+impl Outline for Disk {
+    #[inline(always)]
+    fn contains<L: Lanes>(
+        l: L,
+        x: L::Real,
+        y: L::Real,
+        [ex, ey]: [L::Real; 2],
+    ) -> (L::Mask, L::Mask) {
+        let one = l.real(1.0);
+        let squared = x.mul_add(x, y * y);
+        // |(x+δ)² − x²| ≤ (2|x| + e) e, and 4u for the arithmetic.
+        let two = l.real(2.0);
+        let error = (x.abs().mul_add(two, ex) * ex
+            + y.abs().mul_add(two, ey) * ey
+            + squared * l.real(4.0 * <L::Scalar as Scalar>::ROUNDOFF))
+            * l.real(1.0 + 1e-6);
+        ((squared + error).lt(one), (squared - error).gt(one))
+    }
+}
+
+/// Everything.
+pub struct Plane;
+
+impl Outline for Plane {
+    #[inline(always)]
+    fn contains<L: Lanes>(
+        l: L,
+        _x: L::Real,
+        _y: L::Real,
+        _error: [L::Real; 2],
+    ) -> (L::Mask, L::Mask) {
+        (l.mask(true), l.mask(false))
+    }
+}
+
+/// t = −o_z/d_z within (E + |t| D)/|d_z|, doubled for the higher orders while D ≤ |d_z|/4, and
+/// (x, y) within E + |t| D + |d| δt.
+#[inline(always)]
+pub fn span<L: Lanes, O: Outline>(
+    l: L,
+    shape: &LaneShape<L::Scalar>,
+    ray: &LaneRay<L>,
+) -> Span<L> {
+    let u = <L::Scalar as Scalar>::ROUNDOFF;
+    let inverse = &shape.inverse;
+    let oz = inverse.row_point(l, 2, ray.origin);
+    let dz = inverse.row_dot(l, 2, ray.direction);
+    let dd = l.splat(shape.direction_error);
+    let reciprocal = l.real(1.0) / dz;
+    let t = -(oz * reciprocal);
+    let e = t.abs().mul_add(dd, shape.origin_error(l, ray));
+    let error = (e * reciprocal.abs()).mul_add(l.real(2.0), t.abs() * l.real(4.0 * u));
+    let bounded = dz.abs().gt(dd * l.real(4.0));
+    let x_slope = inverse.row_dot(l, 0, ray.direction);
+    let y_slope = inverse.row_dot(l, 1, ray.direction);
+    let x = x_slope.mul_add(t, inverse.row_point(l, 0, ray.origin));
+    let y = y_slope.mul_add(t, inverse.row_point(l, 1, ray.origin));
+    let bound = |slope: L::Real, value: L::Real| {
+        slope.abs().mul_add(error, e.mul_add(l.real(2.0), value.abs() * l.real(4.0 * u)))
+    };
+    let (inside, outside) = O::contains(l, x, y, [bound(x_slope, x), bound(y_slope, y)]);
+    Span {
+        near: t,
+        far: t,
+        error,
+        hit: bounded & inside,
+        miss: bounded & outside,
+    }
+}

@@ -1,0 +1,235 @@
+//! The first rung: every shape in lanes, answering hit, miss or undecided.
+//!
+//! A ray is taken to canonical coordinates by the rounded inverse matrix. With unit roundoff u,
+//! row sums Rᵢ = Σⱼ|mᵢⱼ| and s = max|o|, the computed local origin is within
+//! E = 6u (max Rᵢ · s + max|bᵢ| + 1) and the local direction within D = 6u · max Rᵢ of the exact
+//! one in every component (four rounded coefficients and three fused operations each; the 1 pays
+//! for the shape's own constants). What follows from E and D is bounded shape by shape; a lane
+//! that a bound cannot decide is left to the certified ladder.
+
+mod cube;
+mod cylinder;
+mod flat;
+mod sphere;
+
+use crate::math::affine::Affine;
+use crate::math::lanes::{Lanes, Mask, Real, Scalar};
+use crate::math::vec3::{Rows, Vec3};
+use crate::scene::Shape;
+
+pub mod implicit;
+
+/// Rays of a packet; directions are unit up to rounding.
+#[derive(Clone, Copy)]
+pub struct LaneRay<L: Lanes> {
+    /// Origins, scene units about the camera.
+    pub origin: Vec3<L::Real>,
+    /// Directions.
+    pub direction: Vec3<L::Real>,
+    /// Largest magnitude of an origin's coordinates.
+    pub extent: L::Real,
+}
+
+impl<L: Lanes> LaneRay<L> {
+    /// A ray with its extent.
+    #[inline(always)]
+    pub fn new(origin: Vec3<L::Real>, direction: Vec3<L::Real>) -> Self {
+        Self {
+            origin,
+            direction,
+            extent: origin.max_abs(),
+        }
+    }
+}
+
+/// Where a line enters and leaves a convex shape, with bounds.
+#[derive(Clone, Copy)]
+pub struct Span<L: Lanes> {
+    /// Entry.
+    pub near: L::Real,
+    /// Exit; equal to the entry for flat shapes.
+    pub far: L::Real,
+    /// Bound on the error of either.
+    pub error: L::Real,
+    /// The line certainly meets the shape.
+    pub hit: L::Mask,
+    /// The line certainly misses it.
+    pub miss: L::Mask,
+}
+
+/// A canonical shape that lanes can intersect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Canonical {
+    /// x² + y² + z² = 1.
+    Sphere,
+    /// [-1, 1]³.
+    Cube,
+    /// x² + y² = 1, |z| ≤ 1, capped.
+    Cylinder,
+    /// z = 0, x² + y² ≤ 1.
+    Disk,
+    /// z = 0, |x|, |y| ≤ 1.
+    Rectangle,
+    /// z = 0.
+    Plane,
+}
+
+impl Canonical {
+    /// The canonical shape of a description; `None` for implicit surfaces.
+    pub fn of(shape: &Shape) -> Option<Self> {
+        Some(match shape {
+            Shape::Sphere => Self::Sphere,
+            Shape::Cube => Self::Cube,
+            Shape::Cylinder => Self::Cylinder,
+            Shape::Disk => Self::Disk,
+            Shape::Rectangle => Self::Rectangle,
+            Shape::Plane => Self::Plane,
+            Shape::Implicit(_) => return None,
+        })
+    }
+}
+
+/// A placed shape as lanes use it.
+#[derive(Debug, Clone, Copy)]
+pub struct LaneShape<T> {
+    /// Which shape; implicit surfaces are intersected elsewhere and place nothing here.
+    pub canonical: Option<Canonical>,
+    /// World (about the camera) → canonical coordinates.
+    pub inverse: Rows<T>,
+    /// Canonical coordinates → world.
+    pub forward: Rows<T>,
+    /// 6u max Rᵢ.
+    pub direction_error: T,
+    /// 6u (max|bᵢ| + 1).
+    pub offset_error: T,
+}
+
+impl<T: Scalar> LaneShape<T> {
+    /// Rounds a placement whose inverse is given.
+    pub fn new(canonical: Option<Canonical>, forward: &Affine, inverse: &Affine) -> Self {
+        let largest = |f: &dyn Fn(&[f64; 4]) -> f64| inverse.rows.iter().map(f).fold(0.0, f64::max);
+        let row_sum = largest(&|r| r[0].abs() + r[1].abs() + r[2].abs());
+        let offset = largest(&|r| r[3].abs());
+        // One more unit roundoff in the bounds pays for rounding the bounds themselves.
+        let unit = 6.5 * T::ROUNDOFF;
+        Self {
+            canonical,
+            inverse: Rows::from_f64(&inverse.rows),
+            forward: Rows::from_f64(&forward.rows),
+            direction_error: T::from_f64(unit * row_sum),
+            offset_error: T::from_f64(unit * (offset + 1.0)),
+        }
+    }
+
+    /// E for a packet of rays.
+    #[inline(always)]
+    fn origin_error<L: Lanes<Scalar = T>>(&self, l: L, ray: &LaneRay<L>) -> L::Real {
+        ray.extent
+            .mul_add(l.splat(self.direction_error), l.splat(self.offset_error))
+    }
+
+    /// Where the lines meet the shape.
+    #[inline(always)]
+    pub fn span<L: Lanes<Scalar = T>>(&self, l: L, ray: &LaneRay<L>) -> Span<L> {
+        match self.canonical {
+            Some(Canonical::Sphere) => sphere::span(l, self, ray),
+            Some(Canonical::Cube) => cube::span(l, self, ray),
+            Some(Canonical::Cylinder) => cylinder::span(l, self, ray),
+            Some(Canonical::Disk) => flat::span::<L, flat::Disk>(l, self, ray),
+            Some(Canonical::Rectangle) => flat::span::<L, flat::Rectangle>(l, self, ray),
+            Some(Canonical::Plane) => flat::span::<L, flat::Plane>(l, self, ray),
+            None => Span {
+                near: l.real(0.0),
+                far: l.real(0.0),
+                error: l.real(0.0),
+                hit: l.mask(false),
+                miss: l.mask(true),
+            },
+        }
+    }
+
+    /// The canonical point of a hit, moved onto the surface, and the canonical outward normal
+    /// (+z for flat shapes; not unit).
+    #[inline(always)]
+    pub fn surface<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        local: Vec3<L::Real>,
+    ) -> (Vec3<L::Real>, Vec3<L::Real>) {
+        match self.canonical {
+            Some(Canonical::Sphere) => sphere::surface(l, local),
+            Some(Canonical::Cube) => cube::surface(l, local),
+            Some(Canonical::Cylinder) => cylinder::surface(l, local),
+            Some(Canonical::Disk | Canonical::Rectangle | Canonical::Plane) | None => {
+                let zero = l.real(0.0);
+                (
+                    Vec3::new(local.x, local.y, zero),
+                    Vec3::new(zero, zero, l.real(1.0)),
+                )
+            }
+        }
+    }
+}
+
+/// Crossings of one slab |x| ≤ 1 of the local ray, with bounds.
+#[derive(Clone, Copy)]
+struct Slab<L: Lanes> {
+    near: L::Real,
+    far: L::Real,
+    error: L::Real,
+    /// Lanes for which even the bounds mean nothing.
+    lost: L::Mask,
+    /// The line runs outside of the slab.
+    outside: L::Mask,
+}
+
+/// Intersects the slab |o + t d| ≤ 1, where o is within `e` and d within `dd` of the exact values
+/// and |t| ≤ `reach` for whatever else the line could hit.
+#[inline(always)]
+fn slab<L: Lanes>(
+    l: L,
+    o: L::Real,
+    d: L::Real,
+    e: L::Real,
+    dd: L::Real,
+    reach: impl Fn() -> L::Real,
+) -> Slab<L> {
+    let one = l.real(1.0);
+    let inverse = one / d;
+    let t1 = (-one - o) * inverse;
+    let t2 = (one - o) * inverse;
+    let largest = t1.abs().max(t2.abs());
+    // First order (e + |t| dd)/|d|, doubled for the rest while dd ≤ |d|/4; 4u for the arithmetic.
+    let error = (largest.mul_add(dd, e) * inverse.abs()).mul_add(
+        l.real(2.0),
+        largest * l.real(4.0 * <L::Scalar as Scalar>::ROUNDOFF),
+    );
+    let mut slab = Slab {
+        near: t1.min(t2),
+        far: t1.max(t2),
+        error,
+        lost: l.mask(false),
+        outside: l.mask(false),
+    };
+    let parallel = !d.abs().gt(dd * l.real(4.0));
+    if parallel.any() {
+        // Along the slab: decided by position, for all t within reach.
+        let drift = (d.abs() + dd).mul_add(reach(), e) * l.real(1.0 + 1e-6);
+        let inside = parallel & (o.abs() + drift).lt(one);
+        let outside = parallel & (o.abs() - drift).gt(one);
+        let far = l.real(1e30);
+        slab.near = l.select(parallel, -far, slab.near);
+        slab.far = l.select(parallel, far, slab.far);
+        slab.error = l.select(parallel, l.real(0.0), slab.error);
+        slab.lost = parallel & !inside & !outside;
+        slab.outside = outside;
+    }
+    slab
+}
+
+/// Farthest |t| at which a line can be inside the canonical box: (|o|₁ + 3)/max|dᵢ|, doubled for
+/// the errors of o and d.
+#[inline(always)]
+fn reach<L: Lanes>(l: L, o: Vec3<L::Real>, d: Vec3<L::Real>) -> L::Real {
+    (o.x.abs() + o.y.abs() + o.z.abs() + l.real(3.0)) * l.real(2.0) / d.max_abs()
+}

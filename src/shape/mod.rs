@@ -1,0 +1,169 @@
+//! Shapes and rays: certified intersection of a line with placed canonical shapes.
+//!
+//! Each shape is a closed set in canonical coordinates (one file a shape), placed in the world by
+//! any invertible 3×4 matrix, which *is* the object: nothing is decided by a rounded inverse. The
+//! question "does the line meet it, and which crossing comes first" is a matter of signs of
+//! polynomials in the given numbers. It is written once, over [`Number`](crate::math::number::Number),
+//! without division or square root, and asked on a ladder: f64 with a forward error bound, then
+//! double-double with one, then exactly. The first rung that knows answers (Woop, Benthin, Wald
+//! 2013, JCGT 2(1), for the pattern of a fast test with a rare exact fallback).
+
+pub mod cube;
+pub mod cylinder;
+pub mod disk;
+pub mod ladder;
+pub mod lanes;
+pub mod line;
+pub mod list;
+pub mod placed;
+pub mod plane;
+pub mod rectangle;
+pub mod sphere;
+mod surd;
+mod value;
+
+use glam::DVec3;
+
+use crate::math::number::Number;
+use line::{LocalRay, Span};
+
+pub use list::{Query, nearest, occluded};
+pub use placed::{Placed, SingularMatrix};
+
+/// The canonical shapes, all closed sets: touching counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ShapeKind {
+    /// x² + y² + z² = 1.
+    Sphere,
+    /// The surface of [-1, 1]³.
+    Cube,
+    /// x² + y² = 1 for |z| ≤ 1, with both caps.
+    Cylinder,
+    /// z = 0, x² + y² ≤ 1.
+    Disk,
+    /// z = 0, |x| ≤ 1, |y| ≤ 1.
+    Rectangle,
+    /// z = 0.
+    Plane,
+}
+
+impl ShapeKind {
+    /// Whether the shape is a piece of the plane z = 0, with +z as its front.
+    pub fn is_flat(self) -> bool {
+        matches!(self, Self::Disk | Self::Rectangle | Self::Plane)
+    }
+
+    /// Where the line enters and leaves the shape: `None` where this kind of number cannot tell.
+    fn span<N: Number>(self, ray: &LocalRay<N>) -> Option<Option<Span>> {
+        match self {
+            Self::Sphere => sphere::span(ray),
+            Self::Cube => cube::span(ray),
+            Self::Cylinder => cylinder::span(ray),
+            Self::Disk => disk::span(ray),
+            Self::Rectangle => rectangle::span(ray),
+            Self::Plane => plane::span(ray),
+        }
+    }
+}
+
+/// The line origin + t direction, with exactly these numbers. The direction need not be of unit
+/// length; t is in units of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray {
+    /// Where t is 0, world coordinates.
+    pub origin: DVec3,
+    /// Not zero.
+    pub direction: DVec3,
+}
+
+impl Ray {
+    /// Whether all numbers are finite and the direction is not zero: only such a ray hits.
+    pub fn is_valid(&self) -> bool {
+        self.origin.is_finite() && self.direction.is_finite() && self.direction != DVec3::ZERO
+    }
+}
+
+/// What is known of the ray's start beyond its rounded coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Start {
+    /// Nothing: the coordinates alone decide.
+    #[default]
+    Free,
+    /// The origin stands for a point of this very surface and the ray goes inward: the entering
+    /// crossing is the start, wherever rounding has put it, and only the leaving one counts. Flat
+    /// shapes have no inside and are not met again.
+    OnSurfaceInward,
+    /// The shape cannot be met: the ray leaves this convex surface outward (or this flat one to
+    /// either side), or the shape is to be left out.
+    Excluded,
+}
+
+/// The kind of arithmetic that decided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Rung {
+    /// f64 with a forward error bound.
+    Double,
+    /// Double-double with a forward error bound.
+    DoubleDouble,
+    /// Exact integers.
+    Exact,
+}
+
+/// How many questions each rung has decided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Tally {
+    /// Decided in f64.
+    pub double: u64,
+    /// Decided in double-double.
+    pub double_double: u64,
+    /// Decided exactly.
+    pub exact: u64,
+}
+
+impl Tally {
+    /// One more question decided on this rung.
+    pub fn count(&mut self, rung: Rung) {
+        match rung {
+            Rung::Double => self.double += 1,
+            Rung::DoubleDouble => self.double_double += 1,
+            Rung::Exact => self.exact += 1,
+        }
+    }
+
+    /// The counts of both together.
+    pub fn joined(self, other: Self) -> Self {
+        Self {
+            double: self.double + other.double,
+            double_double: self.double_double + other.double_double,
+            exact: self.exact + other.exact,
+        }
+    }
+}
+
+/// A crossing of a line with a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// Where on the ray, in units of its direction; finite.
+    pub t: f64,
+    /// World coordinates.
+    pub point: DVec3,
+    /// Unit geometric normal in the world: outward, or the image of +z for flat shapes, under any
+    /// transform, mirrors included.
+    pub normal: DVec3,
+    /// Canonical coordinates of the point, on the surface up to rounding; coordinates that are
+    /// constant on a face are exact.
+    pub local: DVec3,
+    /// Whether the ray meets the outward (+z) side.
+    pub front: bool,
+    /// What decided that this is the hit.
+    pub rung: Rung,
+}
+
+/// Both crossings of a line with a convex surface; the same one twice for flat shapes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossings {
+    /// Where the line enters.
+    pub near: Hit,
+    /// Where it leaves.
+    pub far: Hit,
+}

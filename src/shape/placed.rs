@@ -1,0 +1,229 @@
+//! A shape placed in the world, and a ray's first hit with it.
+
+use std::cmp::Ordering;
+
+use super::ladder::{Ladder, Question, ScaledRay};
+use super::line::{Crossing, Fraction, LocalRay, Span};
+use super::value::{self, Values};
+use super::{Crossings, Hit, Ray, Rung, ShapeKind, Start, Tally};
+use crate::math::affine::Affine;
+use crate::math::exact::Exact;
+use crate::math::number::{Bounded, Number};
+
+/// The matrix maps space onto a plane or less (or has entries that are not finite).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the transform is not invertible")]
+pub struct SingularMatrix;
+
+/// A canonical shape under an invertible affine map; the map's f64 entries are exact by
+/// definition, and its inverse is known to every precision.
+#[derive(Debug, Clone)]
+pub struct Placed {
+    kind: ShapeKind,
+    to_world: Affine,
+    ladder: Ladder,
+}
+
+/// The part of a ray on which crossings count.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    /// Crossings must come after this …
+    pub t_min: f64,
+    /// … or at it.
+    pub inclusive: bool,
+    /// Crossings must come before this.
+    pub t_max: Option<f64>,
+}
+
+impl Limits {
+    /// t > `t_min`, or t ≥ 0 where it is 0, and t < `t_max` where that is finite. `None` for NaN.
+    pub fn new(t_min: f64, t_max: f64) -> Option<Self> {
+        (!t_min.is_nan() && !t_max.is_nan() && t_max != f64::NEG_INFINITY).then(|| Self {
+            t_min: t_min.clamp(f64::MIN, f64::MAX),
+            inclusive: t_min == 0.0,
+            t_max: t_max.is_finite().then_some(t_max),
+        })
+    }
+}
+
+/// Which crossing within the limits comes first?
+struct First<'a> {
+    kind: ShapeKind,
+    ray: &'a ScaledRay,
+    limits: &'a Limits,
+    start: Start,
+}
+
+impl Question for First<'_> {
+    type Answer = Option<Crossing>;
+
+    fn ask<N: Number>(&self, ray: &LocalRay<N>) -> Option<Option<Crossing>> {
+        let Some(span) = self.kind.span(ray)? else {
+            return Some(None);
+        };
+        let candidates = [span.near, span.far];
+        let skipped = usize::from(self.start == Start::OnSurfaceInward || span.near == span.far);
+        let t_min = Fraction::whole(self.ray.scaled_t(self.limits.t_min));
+        for crossing in &candidates[skipped..] {
+            let counts = match crossing.compare(ray, &t_min)? {
+                Ordering::Less => false,
+                Ordering::Equal => self.limits.inclusive,
+                Ordering::Greater => true,
+            };
+            if counts {
+                return self.before_end(crossing, ray);
+            }
+        }
+        Some(None)
+    }
+}
+
+impl First<'_> {
+    fn before_end<N: Number>(
+        &self,
+        crossing: &Crossing,
+        ray: &LocalRay<N>,
+    ) -> Option<Option<Crossing>> {
+        let Some(t_max) = self.limits.t_max else {
+            return Some(Some(*crossing));
+        };
+        let t_max = Fraction::whole(self.ray.scaled_t(t_max));
+        let before = crossing.compare(ray, &t_max)? == Ordering::Less;
+        Some(before.then_some(*crossing))
+    }
+}
+
+/// Where does the whole line enter and leave?
+struct Through(ShapeKind);
+
+impl Question for Through {
+    type Answer = Option<Span>;
+
+    fn ask<N: Number>(&self, ray: &LocalRay<N>) -> Option<Option<Span>> {
+        self.0.span(ray)
+    }
+}
+
+impl Placed {
+    /// Places the shape; whether the matrix is singular is decided exactly.
+    ///
+    /// # Errors
+    /// [`SingularMatrix`] where it is, or where an entry is not finite.
+    pub fn new(kind: ShapeKind, to_world: &Affine) -> Result<Self, SingularMatrix> {
+        Ok(Self {
+            kind,
+            to_world: *to_world,
+            ladder: Ladder::new(to_world)?,
+        })
+    }
+
+    /// The shape before it was placed.
+    pub fn kind(&self) -> ShapeKind {
+        self.kind
+    }
+
+    /// The matrix it was placed with.
+    pub fn to_world(&self) -> &Affine {
+        &self.to_world
+    }
+
+    /// The first crossing of the ray with the surface, entering or leaving, with t > `t_min`, or
+    /// t ≥ 0 where `t_min` is 0. `None` too for a ray that is not valid and for a t beyond f64.
+    ///
+    /// A line that only touches a closed set hits it, except that flat shapes are missed by lines
+    /// in their own plane.
+    pub fn first_hit(&self, ray: &Ray, t_min: f64, start: Start, tally: &mut Tally) -> Option<Hit> {
+        let limits = Limits::new(t_min, f64::INFINITY)?;
+        if !ray.is_valid() {
+            return None;
+        }
+        let ray = ScaledRay::new(ray);
+        let (crossing, rung) = self.first_crossing(&ray, &limits, start, tally)?;
+        self.hit(&crossing, &ray, rung)
+    }
+
+    /// Both crossings of the whole line, at whatever t.
+    pub fn crossings(&self, ray: &Ray, tally: &mut Tally) -> Option<Crossings> {
+        if !ray.is_valid() {
+            return None;
+        }
+        let ray = ScaledRay::new(ray);
+        let (span, rung) = self.ladder.climb(&ray, &Through(self.kind))?;
+        tally.count(rung);
+        let span = span?;
+        Some(Crossings {
+            near: self.hit(&span.near, &ray, rung)?,
+            far: self.hit(&span.far, &ray, rung)?,
+        })
+    }
+
+    pub(super) fn first_crossing(
+        &self,
+        ray: &ScaledRay,
+        limits: &Limits,
+        start: Start,
+        tally: &mut Tally,
+    ) -> Option<(Crossing, Rung)> {
+        let met = match start {
+            Start::Free => true,
+            Start::OnSurfaceInward => !self.kind.is_flat(),
+            Start::Excluded => false,
+        };
+        if !met {
+            return None;
+        }
+        let question = First {
+            kind: self.kind,
+            ray,
+            limits,
+            start,
+        };
+        let (crossing, rung) = self.ladder.climb(ray, &question)?;
+        tally.count(rung);
+        Some((crossing?, rung))
+    }
+
+    /// t, point and normal of a decided crossing; double-double unless its own bound says that it
+    /// is not sharp enough here.
+    pub(super) fn hit(&self, crossing: &Crossing, ray: &ScaledRay, rung: Rung) -> Option<Hit> {
+        let Values {
+            t,
+            point,
+            normal,
+            local,
+        } = value::values(crossing, &self.ladder.double_double, ray)
+            .or_else(|| value::values(crossing, &self.ladder.exact, ray))?;
+        (t.is_finite() && point.is_finite()).then_some(Hit {
+            t,
+            point,
+            normal,
+            local,
+            front: !crossing.leaving,
+            rung,
+        })
+    }
+
+    /// An enclosure of the crossing's t in f64, in units of the scaled direction.
+    pub(super) fn enclosure(&self, crossing: &Crossing, ray: &ScaledRay) -> Bounded {
+        value::parameter(crossing, &self.ladder.double.local(ray))
+    }
+
+    /// Which of two crossings on the same ray comes first, by sharper numbers than f64.
+    pub(super) fn order(
+        (object, crossing): (&Self, &Crossing),
+        (other, other_crossing): (&Self, &Crossing),
+        ray: &ScaledRay,
+    ) -> (Ordering, Rung) {
+        let mine = value::parameter(crossing, &object.ladder.double_double.local(ray));
+        let theirs = value::parameter(other_crossing, &other.ladder.double_double.local(ray));
+        if let Some(order) = mine.minus(&theirs).sign() {
+            return (order, Rung::DoubleDouble);
+        }
+        let surd = |placed: &Self, crossing: &Crossing| {
+            let line: LocalRay<Exact> = placed.ladder.exact.local(ray);
+            super::surd::Surd::of(crossing, &line)
+        };
+        let order = surd(object, crossing).compare(&surd(other, other_crossing));
+        (order, Rung::Exact)
+    }
+}

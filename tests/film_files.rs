@@ -1,0 +1,511 @@
+//! Pictures go to files and come back: bits, attributes, and nothing half-done.
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that cannot set itself up has failed"
+)]
+
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::Path;
+
+use etalon::film::provenance::{self, Provenance};
+use etalon::film::spectral::{self, Bin};
+use etalon::film::{Attribute, Channel, Error, Picture, Values, exr, names, png, whole};
+use tempfile::{TempDir, tempdir};
+
+/// 19 × 37 pixels: neither is a multiple of ZIP's 16 lines, so that the last block is short.
+const WIDTH: usize = 19;
+const HEIGHT: usize = 37;
+
+/// Bit patterns that go through NaN, infinities, subnormals and both signs.
+fn bits(count: usize, seed: u32) -> Vec<f32> {
+    let special = [
+        0x7fc0_1234,
+        0x7f80_0000,
+        0xff80_0000,
+        0x0000_0001,
+        0x8000_0000,
+    ];
+    let mut state = seed;
+    let random = std::iter::repeat_with(move || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        state
+    });
+    let all = special.into_iter().chain(random).map(f32::from_bits);
+    all.take(count).collect()
+}
+
+fn triples(count: usize, seed: u32) -> Vec<[f32; 3]> {
+    let planes = [0, 1, 2].map(|k| bits(count, seed + k));
+    (0..count)
+        .map(|i| [planes[0][i], planes[1][i], planes[2][i]])
+        .collect()
+}
+
+fn picture() -> Picture {
+    let count = WIDTH * HEIGHT;
+    let mut picture = Picture::new(WIDTH, HEIGHT);
+    picture.push_triple(names::BEAUTY, names::RGB, &triples(count, 1));
+    picture.push_triple(names::STANDARD_ERROR, names::RGB, &triples(count, 4));
+    picture.push_triple(names::NORMAL, names::XYZ, &triples(count, 7));
+    picture
+        .channels
+        .push(Channel::float(names::DEPTH, bits(count, 10)));
+    // Whole numbers beyond 2²⁴, which single precision cannot hold.
+    let ids: Vec<u32> = (0..count as u32).map(|i| names::NOTHING - i).collect();
+    picture
+        .channels
+        .push(Channel::integer(names::OBJECT_ID, ids));
+    picture.attributes = provenance().attributes();
+    picture
+        .attributes
+        .push(("single".to_owned(), Attribute::Float(0.1)));
+    picture
+}
+
+fn provenance() -> Provenance {
+    Provenance {
+        version: "1.2.3".to_owned(),
+        scene_path: "scenes/cube.toml".to_owned(),
+        scene_text: "# Würfel — λ = 550 nm → 人\n[camera]\n".repeat(400),
+        panel: Some("a".to_owned()),
+        seed: u64::MAX,
+        spp: 5_000_000_000,
+        sampler: "sobol".to_owned(),
+        replicates: 8,
+        precision: "f64".to_owned(),
+        wavelengths: 8,
+        plan: String::new(),
+        max_depth: None,
+        seconds: 0.1,
+        samples_per_second: 1.0e7,
+        nan_count: 3,
+        standard_error: None,
+        energy_cut: Some(0.25),
+        lights_left_out: vec!["sun".to_owned(), "lamp".to_owned()],
+    }
+}
+
+/// The files in a directory.
+fn listing(directory: &Path) -> Vec<String> {
+    let entries = fs::read_dir(directory).unwrap();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+/// The values of a channel as bits, since NaN does not equal itself.
+fn value_bits(channel: &Channel) -> Vec<u32> {
+    match &channel.values {
+        Values::F32(values) => values.iter().map(|value| value.to_bits()).collect(),
+        Values::U32(values) => values.clone(),
+    }
+}
+
+fn assert_same(written: &Picture, read: &Picture) {
+    assert_eq!((written.width, written.height), (read.width, read.height));
+    assert_eq!(written.channels.len(), read.channels.len());
+    for channel in &written.channels {
+        let back = read.channel(&channel.name).unwrap();
+        let kinds = [channel, back].map(|c| matches!(c.values, Values::F32(_)));
+        assert_eq!(kinds[0], kinds[1], "{}", channel.name);
+        assert_eq!(value_bits(channel), value_bits(back), "{}", channel.name);
+    }
+    let mut attributes = written.attributes.clone();
+    attributes.sort_by(|a, b| a.0.cmp(&b.0));
+    assert_eq!(attributes, read.attributes);
+}
+
+#[test]
+fn exr_keeps_every_bit_and_attribute() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("picture.exr");
+    let picture = picture();
+    exr::write(&path, &picture).unwrap();
+    assert_same(&picture, &exr::read(&path).unwrap());
+    assert_eq!(listing(directory.path()), ["picture.exr"]);
+}
+
+#[test]
+fn exr_is_a_single_part_of_sorted_scan_lines_compressed_by_zip() {
+    use ::exr::meta::attribute::{Compression, LineOrder};
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("picture.exr");
+    exr::write(&path, &picture()).unwrap();
+    let meta = ::exr::meta::MetaData::read_from_file(&path, true).unwrap();
+    let [header] = meta.headers.as_slice() else {
+        panic!("{} parts", meta.headers.len());
+    };
+    assert_eq!(header.compression, Compression::ZIP16);
+    assert_eq!(header.line_order, LineOrder::Increasing);
+    assert!(!header.blocks.has_tiles());
+    let primaries = header.shared_attributes.chromaticities.unwrap();
+    assert_eq!((primaries.green.x(), primaries.green.y()), (0.3, 0.6));
+    assert_eq!((primaries.white.x(), primaries.white.y()), (0.3127, 0.329));
+    let names: Vec<String> = header
+        .channels
+        .list
+        .iter()
+        .map(|c| c.name.to_string())
+        .collect();
+    assert!(names.is_sorted(), "{names:?}");
+}
+
+/// The order of a hash map with a random seed must not show: two such orders of 21 attributes
+/// agree by chance once in 21! ≈ 5e19.
+#[test]
+fn the_same_picture_is_the_same_bytes() {
+    let directory = tempdir().unwrap();
+    let [first, second] = ["first", "second"].map(|name| directory.path().join(name));
+    exr::write(&first, &picture()).unwrap();
+    exr::write(&second, &picture()).unwrap();
+    assert!(fs::read(first).unwrap() == fs::read(second).unwrap());
+}
+
+#[test]
+fn spectral_layout_follows_the_paper() {
+    assert_eq!(spectral::channel_name(550.0), "S0.550,000000nm");
+    assert_eq!(spectral::channel_name(387.5), "S0.387,500000nm");
+    assert_eq!(spectral::wavelength("S0.387,500000nm"), Some(387.5));
+    assert_eq!(spectral::wavelength("T.387,500000nm"), None);
+    assert_eq!(spectral::wavelength("R"), None);
+
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("spectral.exr");
+    let mut picture = Picture::new(2, 1);
+    picture.push_triple(names::BEAUTY, names::RGB, &[[1.0; 3]; 2]);
+    let bin = |nm: f64, sensitivity: Vec<(f64, f64)>| Bin {
+        nm,
+        sensitivity,
+        values: vec![nm as f32, 0.5],
+    };
+    picture.push_spectral(vec![
+        bin(387.5, vec![(380.0, 0.5), (390.25, 0.6)]),
+        bin(550.0, Vec::new()),
+    ]);
+    exr::write(&path, &picture).unwrap();
+
+    let read = exr::read(&path).unwrap();
+    let text = |value: &str| Some(Attribute::Text(value.to_owned()));
+    assert_eq!(
+        read.attribute("spectralLayoutVersion").cloned(),
+        text("1.0")
+    );
+    assert_eq!(
+        read.attribute("emissiveUnits").cloned(),
+        text("W.m^-2.sr^-1")
+    );
+    let sensitivity = read.attribute("S0.387,500000nm").cloned();
+    assert_eq!(sensitivity, text("380nm:0.5;390.25nm:0.6;"));
+    assert_eq!(read.attribute("S0.550,000000nm"), None);
+    assert_eq!(
+        read.floats("S0.550,000000nm"),
+        Some([550.0, 0.5].as_slice())
+    );
+}
+
+#[test]
+fn contradictory_pictures_are_refused() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("picture.exr");
+    let good = || Channel::float("R", vec![1.0; 2]);
+    let faults: [(&str, Vec<Channel>, Vec<&str>); 7] = [
+        ("no channels", vec![], vec![]),
+        ("values", vec![Channel::float("R", vec![1.0])], vec![]),
+        ("twice", vec![good(), good()], vec![]),
+        ("empty", vec![Channel::float("", vec![1.0; 2])], vec![]),
+        (
+            "longer",
+            vec![Channel::float("R".repeat(32), vec![1.0; 2])],
+            vec![],
+        ),
+        ("twice", vec![good()], vec!["a", "a"]),
+        ("reserved", vec![good()], vec!["compression"]),
+    ];
+    for (word, channels, attributes) in faults {
+        let picture = Picture {
+            channels,
+            attributes: attributes
+                .into_iter()
+                .map(|name| (name.to_owned(), Attribute::Int(1)))
+                .collect(),
+            ..Picture::new(2, 1)
+        };
+        let error = exr::write(&path, &picture).unwrap_err();
+        assert!(matches!(error, Error::Picture { .. }), "{error}");
+        assert!(error.to_string().contains(word), "{error}");
+    }
+    assert!(exr::write(&path, &Picture::new(0, 1)).is_err());
+    assert!(listing(directory.path()).is_empty());
+}
+
+#[test]
+fn damaged_and_foreign_files_are_errors_with_a_name() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("picture.exr");
+    assert!(matches!(exr::read(&path), Err(Error::Read { .. })));
+    exr::write(&path, &picture()).unwrap();
+    let bytes = fs::read(&path).unwrap();
+    for length in [0, 3, 200, bytes.len() / 2, bytes.len() - 1] {
+        fs::write(&path, &bytes[..length]).unwrap();
+        let error = exr::read(&path).unwrap_err();
+        assert!(matches!(error, Error::Content { .. }), "{length}: {error}");
+        assert!(error.to_string().contains("picture.exr"), "{error}");
+    }
+    fs::write(&path, "[camera]\nfov = 40\n").unwrap();
+    assert!(matches!(exr::read(&path), Err(Error::Content { .. })));
+}
+
+/// An old file in a directory of its own.
+fn with_old_file() -> (TempDir, std::path::PathBuf) {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("old.exr");
+    fs::write(&path, "old").unwrap();
+    (directory, path)
+}
+
+#[test]
+fn a_write_that_fails_leaves_the_old_file_and_nothing_else() {
+    let (directory, path) = with_old_file();
+    let full = |file: &mut File| {
+        file.write_all(b"half a picture").unwrap();
+        Err(Error::Write {
+            path: path.clone(),
+            source: io::ErrorKind::StorageFull.into(),
+        })
+    };
+    let error = whole::write(&path, full).unwrap_err();
+    assert_eq!(error.path(), path);
+    assert_eq!(fs::read(&path).unwrap(), b"old");
+    assert_eq!(listing(directory.path()), ["old.exr"]);
+
+    let new = directory.path().join("new.exr");
+    whole::write(&new, full).unwrap_err();
+    assert_eq!(listing(directory.path()), ["old.exr"]);
+}
+
+#[test]
+fn probing_finds_bad_paths_and_touches_nothing() {
+    let (directory, path) = with_old_file();
+    let modified = || fs::metadata(&path).unwrap().modified().unwrap();
+    let before = modified();
+    whole::probe(&path).unwrap();
+    whole::probe(&directory.path().join("new.exr")).unwrap();
+    assert_eq!(modified(), before);
+    assert_eq!(fs::read(&path).unwrap(), b"old");
+    assert_eq!(listing(directory.path()), ["old.exr"]);
+
+    let missing = directory.path().join("missing/new.exr");
+    let error = whole::probe(&missing).unwrap_err();
+    assert!(matches!(error, Error::Directory { .. }), "{error}");
+    assert!(error.to_string().contains("missing/new.exr"), "{error}");
+    assert!(!error.to_string().contains(".part"), "{error}");
+    assert!(exr::write(&missing, &picture()).is_err());
+    assert!(png::write_preview(&missing, 1, 1, &[[0.5; 3]]).is_err());
+
+    let error = whole::probe(directory.path()).unwrap_err();
+    assert!(matches!(error, Error::Target { .. }), "{error}");
+    whole::probe(&path.join("below_a_file.exr")).unwrap_err();
+    whole::probe(Path::new("")).unwrap_err();
+}
+
+#[test]
+fn a_read_only_file_is_not_replaced() {
+    let (directory, path) = with_old_file();
+    let mut permissions = fs::metadata(&path).unwrap().permissions();
+    permissions.set_readonly(true);
+    fs::set_permissions(&path, permissions).unwrap();
+    assert!(matches!(whole::probe(&path), Err(Error::Target { .. })));
+    assert!(exr::write(&path, &picture()).is_err());
+    assert_eq!(fs::read(&path).unwrap(), b"old");
+    assert_eq!(listing(directory.path()), ["old.exr"]);
+}
+
+#[cfg(unix)]
+mod unix {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
+    use super::*;
+
+    fn mode(path: &Path) -> u32 {
+        fs::metadata(path).unwrap().permissions().mode() & 0o777
+    }
+
+    #[test]
+    fn new_files_have_ordinary_permissions_and_replaced_ones_keep_theirs() {
+        let (directory, path) = with_old_file();
+        let new = directory.path().join("new.exr");
+        exr::write(&new, &picture()).unwrap();
+        assert_eq!(mode(&new), mode(&path));
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
+        exr::write(&path, &picture()).unwrap();
+        assert_eq!(mode(&path), 0o640);
+    }
+
+    #[test]
+    fn a_symbolic_link_is_followed() {
+        let (directory, path) = with_old_file();
+        let link = directory.path().join("link.exr");
+        symlink("old.exr", &link).unwrap();
+        exr::write(&link, &picture()).unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_same(&picture(), &exr::read(&path).unwrap());
+        let dangling = directory.path().join("dangling.exr");
+        symlink("nowhere.exr", &dangling).unwrap();
+        assert!(matches!(whole::probe(&dangling), Err(Error::Target { .. })));
+    }
+
+    /// A superuser may write anywhere, so that this can only be seen by others.
+    #[test]
+    fn a_directory_that_takes_no_files_is_an_error() {
+        let (directory, path) = with_old_file();
+        let locked = fs::Permissions::from_mode(0o555);
+        fs::set_permissions(directory.path(), locked).unwrap();
+        let superuser = File::create(directory.path().join("trial")).is_ok();
+        if !superuser {
+            let error = whole::probe(&path).unwrap_err();
+            assert!(matches!(error, Error::Directory { .. }), "{error}");
+            assert!(exr::write(&path, &picture()).is_err());
+            assert_eq!(fs::read(&path).unwrap(), b"old");
+        }
+        let unlocked = fs::Permissions::from_mode(0o755);
+        fs::set_permissions(directory.path(), unlocked).unwrap();
+    }
+
+    /// Linux's /proc takes no files from anybody, the superuser included.
+    #[test]
+    fn a_file_system_that_takes_no_files_is_an_error() {
+        if Path::new("/proc/self").is_dir() {
+            let error = whole::probe(Path::new("/proc/picture.exr")).unwrap_err();
+            assert!(matches!(error, Error::Directory { .. }), "{error}");
+        }
+    }
+
+    /// Devices are fed, not replaced; /dev/full says that no space is left.
+    #[test]
+    fn a_full_device_is_an_error() {
+        let (full, null) = (Path::new("/dev/full"), Path::new("/dev/null"));
+        if !full.exists() || !null.exists() {
+            return;
+        }
+        exr::write(null, &picture()).unwrap();
+        assert!(!fs::metadata(null).unwrap().is_file());
+        let error = exr::write(full, &picture()).unwrap_err();
+        let Error::Write { source, .. } = &error else {
+            panic!("{error}");
+        };
+        assert_eq!(source.kind(), io::ErrorKind::StorageFull);
+        assert!(error.to_string().contains("/dev/full"), "{error}");
+        assert!(png::write_preview(full, 1, 1, &[[0.5; 3]]).is_err());
+    }
+}
+
+/// Values of the sRGB transfer function, IEC 61966-2-1: mid-grey 0.18 is 117.6 of 255, 0.5 is
+/// 187.5 (0.735357 · 255), 0.002 is 6.6 (linear part).
+#[test]
+fn preview_encodes_srgb() {
+    for (linear, byte) in [(0.0, 0), (0.002, 7), (0.18, 118), (0.5, 188)] {
+        assert_eq!(png::encode([linear; 3], 1.0), [byte; 3], "{linear}");
+    }
+    // White lies at 0.9 of the tone curve: 255 · (1.055 · 0.9^(1/2.4) − 0.055) = 243.4.
+    assert_eq!(png::encode([1.0; 3], 1.0), [243; 3]);
+    assert_eq!(png::encode([f32::MAX; 3], 1.0), [255; 3]);
+}
+
+#[test]
+fn preview_never_fails_on_odd_colours() {
+    assert_eq!(png::encode([f32::NAN, 0.0, 0.0], 1.0), [255, 0, 255]);
+    assert_eq!(png::encode([f32::INFINITY; 3], 1.0), [255, 0, 255]);
+    assert_eq!(png::encode([-1.0; 3], 1.0), [0; 3]);
+    assert_eq!(png::encode([f32::MIN; 3], 1.0), [0; 3]);
+    // A spectral green: red becomes 0, the others are mixed with grey; the luminance
+    // 0.2126 · (−0.3) + 0.7152 · 0.6 + 0.0722 · 0.1 = 0.37256 stays (to the 8-bit rounding,
+    // half a level of at most 0.009 in linear light at its steepest).
+    let encoded = png::encode([-0.3, 0.6, 0.1], 1.0);
+    assert_eq!(encoded[0], 0);
+    let linear = encoded.map(|byte| {
+        let value = f64::from(byte) / 255.0;
+        if value <= 0.04045 {
+            value / 12.92
+        } else {
+            ((value + 0.055) / 1.055).powf(2.4)
+        }
+    });
+    let luminance = 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
+    assert!((luminance - 0.37256).abs() < 0.0045, "{luminance}");
+}
+
+#[test]
+fn exposure_follows_the_bright_part_of_the_picture() {
+    let with = |value: f32, outliers: usize| {
+        let mut pixels = vec![[value; 3]; 200];
+        pixels[..outliers].fill([1.0e6; 3]);
+        pixels[199] = [f32::NAN; 3];
+        png::exposure(&pixels)
+    };
+    // The luminance weights add up to 1 but for the rounding of their sum and of 1/x.
+    let close = |a: f64, b: f64| (a - b).abs() <= 8.0 * f64::EPSILON * b;
+    assert!(close(with(4.0, 0), 0.25));
+    assert!(close(with(0.5, 0), 1.0));
+    assert!(close(with(0.018_f32, 0), 0.18 / f64::from(0.018_f32)));
+    assert!(close(with(0.0, 0), 1.0));
+    assert!(close(
+        with(f32::from_bits(1), 0),
+        0.18 / f64::from(f32::from_bits(1))
+    ));
+    // One pixel in a hundred may be an outlier (of 199 finite ones: 1), two may not.
+    assert!(close(with(0.5, 1), 1.0));
+    assert!(close(with(0.5, 2), 1.0e-6));
+    assert!(close(png::exposure(&[[f32::NAN; 3]]), 1.0));
+}
+
+#[test]
+fn preview_is_a_png_of_the_picture() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("preview.png");
+    let rgb = [
+        [0.5, 0.0, 0.0],
+        [0.0, 0.5, 0.0],
+        [0.0, 0.0, 0.5],
+        [0.5; 3],
+        [0.0; 3],
+        [0.18; 3],
+    ];
+    let exposure = png::write_preview(&path, 3, 2, &rgb).unwrap();
+    let decoded = image::open(&path).unwrap().into_rgb8();
+    assert_eq!(decoded.dimensions(), (3, 2));
+    for (pixel, linear) in decoded.pixels().zip(rgb) {
+        assert_eq!(pixel.0, png::encode(linear, exposure));
+    }
+    assert!(png::write_preview(&path, 3, 3, &rgb).is_err());
+    assert!(png::write_preview(&path, 0, 0, &[]).is_err());
+    assert_eq!(listing(directory.path()), ["preview.png"]);
+}
+
+#[test]
+fn provenance_says_everything_once() {
+    let attributes = provenance().attributes();
+    let get = |name: &str| {
+        let found: Vec<_> = attributes
+            .iter()
+            .filter(|(other, _)| other == name)
+            .collect();
+        assert!(found.len() <= 1, "{name}");
+        found.first().map(|(_, value)| value.clone())
+    };
+    let text = |value: &str| Some(Attribute::Text(value.to_owned()));
+    assert_eq!(get("seed"), text("18446744073709551615"));
+    assert_eq!(get("spp"), text("5000000000"));
+    assert_eq!(get("nanCount"), Some(Attribute::Int(3)));
+    assert_eq!(get("maxDepth"), text("unlimited"));
+    assert_eq!(get("energyCutByMaxDepth"), Some(Attribute::Double(0.25)));
+    assert_eq!(get("standardError"), None);
+    assert_eq!(get("lightsLeftOut"), text("sun, lamp"));
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
+    assert!(attributes.iter().all(|(name, _)| name.chars().all(plain)));
+    // FIPS 180-4's example: SHA-256 of "abc".
+    let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+    assert_eq!(provenance::hash("abc"), abc);
+}
