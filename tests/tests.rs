@@ -2,6 +2,7 @@
 
 mod film_files;
 mod oracle_primitives;
+mod scene_file;
 mod shape_ladder;
 mod shape_list;
 mod spectrum;

@@ -4,6 +4,21 @@
 //! radiance in W·m⁻²·sr⁻¹·nm⁻¹. A [`Scene`] that exists is valid: every check of
 //! values happens while the file is read (see [`parse`]).
 
+mod build;
+mod error;
+mod fields;
+mod file;
+mod materials;
+mod names;
+mod objects;
+mod overlay;
+mod spectra;
+mod transform;
+mod tree;
+
+pub use error::{Diagnostic, SceneError};
+pub use file::{LARGEST_FILE, Overrides, load, panel_names, parse, read};
+
 use glam::DVec3;
 
 use crate::math::affine::Affine;

@@ -1,0 +1,307 @@
+//! From a path to a checked scene.
+
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+
+use super::build;
+use super::error::{Diagnostic, SceneError};
+use super::fields::{Complaint, Fields, Report};
+use super::overlay::{self, Setting};
+use super::tree::{self, Entry, Node, Origins, Place, Table, Value};
+use super::{Scene, Source};
+
+/// The largest scene file (and data file) accepted, bytes.
+pub const LARGEST_FILE: u64 = 16 << 20;
+
+/// What the command line changes in a scene file.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Overrides {
+    /// Name of the panel to lay over the file's own scene.
+    pub panel: Option<String>,
+    /// Dotted paths and TOML values, laid over the file and the panel in this order.
+    pub set: Vec<(String, String)>,
+}
+
+/// Reads the scene file at `path`.
+///
+/// # Errors
+/// Files that cannot be read or hold no valid scene; the message says where and why.
+pub fn load(path: &Path, options: &Overrides) -> Result<Scene, SceneError> {
+    let text = read(path)?;
+    let base_dir = path.parent().unwrap_or(Path::new(""));
+    parse(&path.display().to_string(), &text, base_dir, options)
+}
+
+/// Reads the text of the scene file at `path`.
+///
+/// # Errors
+/// Directories, unreadable or too large files, and text that is not UTF-8.
+pub fn read(path: &Path) -> Result<String, SceneError> {
+    String::from_utf8(read_bytes(path)?).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        let text = String::from_utf8_lossy(error.as_bytes());
+        let name = path.display().to_string();
+        let mut diagnostic = Diagnostic::at(&name, &text, at, at + 1, "not UTF-8 text".to_owned());
+        diagnostic.expected = Some("a scene file (TOML) in UTF-8".to_owned());
+        SceneError::Invalid(Box::new(diagnostic))
+    })
+}
+
+/// Reads a whole file of bounded size. Devices and pipes have no size to ask for, so the reading
+/// itself is bounded too.
+pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, SceneError> {
+    let unreadable = |reason| SceneError::Unreadable {
+        path: path.to_owned(),
+        reason,
+    };
+    let too_large = || SceneError::TooLarge {
+        path: path.to_owned(),
+        limit: LARGEST_FILE,
+    };
+    let metadata = fs::metadata(path).map_err(unreadable)?;
+    if metadata.is_dir() {
+        return Err(SceneError::Directory {
+            path: path.to_owned(),
+        });
+    }
+    if metadata.len() > LARGEST_FILE {
+        return Err(too_large());
+    }
+    let mut bytes = Vec::new();
+    fs::File::open(path)
+        .and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes))
+        .map_err(unreadable)?;
+    if bytes.len() as u64 > LARGEST_FILE {
+        return Err(too_large());
+    }
+    Ok(bytes)
+}
+
+/// Reads a scene from text. `path_for_messages` is what the text is called in messages,
+/// `base_dir` where the files it names are looked for.
+///
+/// # Errors
+/// Anything that is not a valid scene, in the file's own scene or any of its panels; the first
+/// error in the order of the file is reported. With `--set` only the scene asked for is checked.
+pub fn parse(
+    path_for_messages: &str,
+    text: &str,
+    base_dir: &Path,
+    options: &Overrides,
+) -> Result<Scene, SceneError> {
+    let origins = origins(path_for_messages, text, options);
+    let report = Report::default();
+    let mut root = parse_tree(&origins, text)?;
+    let settings: Vec<Setting> = options
+        .set
+        .iter()
+        .enumerate()
+        .filter_map(|(i, (key, value))| Setting::parse(&report, i + 1, key, value))
+        .collect();
+    for setting in settings.iter().filter(|s| s.is_for_panels()) {
+        setting.apply(&report, &mut root);
+    }
+    let panels = panels(&report, &mut root);
+    let chosen = choose(&report, &panels, options);
+
+    let mut asked = root.clone();
+    if let Some(panel) = chosen {
+        overlay::merge(&mut asked, &panel.over);
+    }
+    for setting in settings.iter().filter(|s| !s.is_for_panels()) {
+        setting.apply(&report, &mut asked);
+    }
+    let parts = build::scene(&report, base_dir, &asked);
+    if options.set.is_empty() {
+        check_others(&report, base_dir, root, &panels, chosen);
+    }
+    match (report.first(), parts) {
+        (None, Some(parts)) => Ok(Scene {
+            source: Source {
+                path: path_for_messages.to_owned(),
+                text: text.to_owned(),
+            },
+            panel: chosen.map(|panel| panel.name.clone()),
+            camera: parts.look.camera,
+            image: parts.look.image,
+            materials: parts.look.materials,
+            objects: parts.objects,
+            lights: parts.lights,
+            environment: parts.look.environment,
+        }),
+        (Some(complaint), _) => Err(invalid(&origins, complaint)),
+        (None, None) => Err(invalid(
+            &origins,
+            Complaint::new(START, "the file holds no scene"),
+        )),
+    }
+}
+
+/// The names of the panels of a scene file, in the order of the file.
+///
+/// # Errors
+/// Text that is not TOML, and panels without a name, with a name twice, or with unknown keys.
+pub fn panel_names(path_for_messages: &str, text: &str) -> Result<Vec<String>, SceneError> {
+    let origins = origins(path_for_messages, text, &Overrides::default());
+    let report = Report::default();
+    let mut root = parse_tree(&origins, text)?;
+    let names = panels(&report, &mut root)
+        .into_iter()
+        .map(|panel| panel.name)
+        .collect();
+    match report.first() {
+        Some(complaint) => Err(invalid(&origins, complaint)),
+        None => Ok(names),
+    }
+}
+
+/// The first byte of the file.
+const START: Place = Place {
+    origin: 0,
+    start: 0,
+    end: 0,
+};
+
+/// The file, the `--set` arguments, and last the `--panel` argument.
+fn origins<'a>(path: &'a str, text: &str, options: &Overrides) -> Origins<'a> {
+    let mut texts = vec![(path, text.to_owned())];
+    let set = options.set.iter();
+    texts.extend(set.map(|(key, value)| ("--set", format!("{key}={value}"))));
+    texts.extend(options.panel.iter().map(|name| ("--panel", name.clone())));
+    Origins { texts }
+}
+
+fn parse_tree(origins: &Origins<'_>, text: &str) -> Result<Table, SceneError> {
+    tree::parse(text, 0, 0).map_err(|error| {
+        let span = error.span().unwrap_or(0..0);
+        let place = Place {
+            origin: 0,
+            start: span.start,
+            end: span.end,
+        };
+        let words = error.message().trim().replace('\n', ", ");
+        let (message, expected) = match words.split_once(", expected ") {
+            Some((message, expected)) => (message.to_owned(), expected.to_owned()),
+            None => (words, "TOML".to_owned()),
+        };
+        invalid(origins, Complaint::new(place, message).expected(expected))
+    })
+}
+
+fn invalid(origins: &Origins<'_>, complaint: Complaint) -> SceneError {
+    let mut diagnostic = origins.diagnostic(complaint.place, complaint.message);
+    diagnostic.expected = complaint.expected;
+    diagnostic.suggestion = complaint.suggestion;
+    SceneError::Invalid(Box::new(diagnostic))
+}
+
+/// A named variant and the tables it lays over the file's own.
+struct Panel {
+    name: String,
+    name_place: Place,
+    over: Table,
+}
+
+/// Tables a panel may lay over the file's own.
+const TABLES: &[&str] = &["camera", "materials", "environment"];
+
+/// Takes the panels out of the document.
+fn panels(report: &Report, root: &mut Table) -> Vec<Panel> {
+    let Some(index) = root.entries.iter().position(|e| e.key == "panel") else {
+        return Vec::new();
+    };
+    let node = root.entries.remove(index).node;
+    let expected = "[[panel]] tables";
+    let Some(nodes) = report.list("panel", &node, expected) else {
+        return Vec::new();
+    };
+    let mut panels: Vec<Panel> = Vec::with_capacity(nodes.len());
+    for node in nodes {
+        let Some(panel) = panel(report, node) else {
+            continue;
+        };
+        if panels.iter().any(|other| other.name == panel.name) {
+            let message = format!("the panel name \"{}\" is used twice", panel.name);
+            report.add(Complaint::new(panel.name_place, message).expected("a name of its own"));
+        }
+        panels.push(panel);
+    }
+    panels
+}
+
+fn panel(report: &Report, node: &Node) -> Option<Panel> {
+    let mut keys = vec!["name"];
+    keys.extend(build::IMAGE_KEYS);
+    keys.extend(TABLES);
+    let fields = Fields::open(report, "panel", node, &keys)?;
+    let name = fields.required("name", "name = \"…\"", |what, node| {
+        report.text(what, node).map(|name| (name, node.place))
+    });
+    let mut over = Table::default();
+    let mut image = Table::default();
+    for entry in &fields.table.entries {
+        if TABLES.contains(&entry.key.as_str()) {
+            over.entries.push(entry.clone());
+        } else if build::IMAGE_KEYS.contains(&entry.key.as_str()) {
+            image.entries.push(entry.clone());
+        }
+    }
+    if !image.entries.is_empty() {
+        over.entries.push(Entry {
+            key: "image".to_owned(),
+            key_place: node.place,
+            node: Node {
+                place: node.place,
+                value: Value::Table(image),
+            },
+        });
+    }
+    name.map(|(name, name_place)| Panel {
+        name: name.to_owned(),
+        name_place,
+        over,
+    })
+}
+
+fn choose<'a>(report: &Report, panels: &'a [Panel], options: &Overrides) -> Option<&'a Panel> {
+    let name = options.panel.as_ref()?;
+    let found = panels.iter().find(|panel| panel.name == *name);
+    found.or_else(|| {
+        let names: Vec<&str> = panels.iter().map(|panel| panel.name.as_str()).collect();
+        let place = Place {
+            origin: options.set.len() + 1,
+            start: 0,
+            end: name.len(),
+        };
+        report.unknown(place, format!("there is no panel \"{name}\""), name, &names)
+    })
+}
+
+/// Checks what was not asked for: the other panels, and the file's own scene, which may leave to
+/// its panels to say what is missing.
+fn check_others(
+    report: &Report,
+    base_dir: &Path,
+    root: Table,
+    panels: &[Panel],
+    chosen: Option<&Panel>,
+) {
+    let variants = panels.iter().map(Some).chain([None]);
+    for variant in variants {
+        if variant.map(|p| p.name_place) == chosen.map(|p| p.name_place) {
+            continue;
+        }
+        let findings = Report::default();
+        let mut table = root.clone();
+        if let Some(panel) = variant {
+            // Shapes and lights are the same in every panel and have been checked.
+            table
+                .entries
+                .retain(|e| e.key != "object" && e.key != "light");
+            overlay::merge(&mut table, &panel.over);
+        }
+        build::scene(&findings, base_dir, &table);
+        report.absorb(findings, |c| variant.is_some() || !c.missing);
+    }
+}

@@ -1,0 +1,288 @@
+//! Reading objects and their shapes.
+
+use std::collections::{HashMap, HashSet};
+
+use glam::DVec3;
+
+use super::fields::{Complaint, Fields, Report};
+use super::names::one_of;
+use super::transform;
+use super::tree::{Node, Value};
+use super::{Implicit, ImplicitSurface, Named, Object, Shape};
+use crate::math::affine::Affine;
+
+const SHAPES: &[&str] = &[
+    "sphere",
+    "cube",
+    "cylinder",
+    "disk",
+    "rectangle",
+    "plane",
+    "implicit",
+];
+const KEYS: &[&str] = &["name", "shape", "material", "transform"];
+const SURFACES: &[(&str, ImplicitSurface)] = &[
+    ("heart", ImplicitSurface::Heart),
+    ("mitchell", ImplicitSurface::Mitchell),
+];
+/// Steps along a ray of the baseline finder: default and maximum.
+const STEPS: u32 = 1000;
+const MOST_STEPS: u32 = 1_000_000;
+
+/// A shape as written: canonical form, its size, and where its centre is.
+struct Sized {
+    shape: Shape,
+    size: DVec3,
+    center: DVec3,
+}
+
+/// Reads `[[object]]`. With `hidden`, the materials could not be read and are not looked up.
+pub(super) fn read(
+    report: &Report,
+    node: Option<&Node>,
+    materials: &[String],
+    hidden: bool,
+) -> Option<Vec<Named<Object>>> {
+    let Some(node) = node else {
+        return Some(Vec::new());
+    };
+    let nodes = report.list("object", node, "[[object]] tables")?;
+    let indices: HashMap<&str, usize> = materials
+        .iter()
+        .enumerate()
+        .map(|(i, name)| (name.as_str(), i))
+        .collect();
+    let find = |what: &str, node: &Node| {
+        let name = report.text(what, node)?;
+        if hidden {
+            return Some(0);
+        }
+        indices.get(name).copied().or_else(|| {
+            let names: Vec<&str> = materials.iter().map(String::as_str).collect();
+            let message = format!("the material \"{name}\" is not defined");
+            report.unknown(node.place, message, name, &names)
+        })
+    };
+    let mut used = HashSet::new();
+    let mut objects = Vec::with_capacity(nodes.len());
+    for (index, node) in nodes.iter().enumerate() {
+        objects.push(object(report, node, index, &find, &mut used));
+    }
+    objects.into_iter().collect()
+}
+
+fn object(
+    report: &Report,
+    node: &Node,
+    index: usize,
+    find: &impl Fn(&str, &Node) -> Option<usize>,
+    used: &mut HashSet<String>,
+) -> Option<Named<Object>> {
+    let fields = Fields::open(report, "object", node, KEYS)?;
+    let name = fields.optional("name", None, |what, node| {
+        let name = report.text(what, node)?.to_owned();
+        if used.insert(name.clone()) {
+            return Some(Some(name));
+        }
+        let message = format!("the object name \"{name}\" is used twice");
+        report.fail(Complaint::new(node.place, message).expected("a name of its own"))
+    });
+    let sized = fields.required("shape", &one_of(SHAPES), |_, node| shape(report, node));
+    let material = fields.required("material", "the name of a material", find);
+    let to_world = fields.optional("transform", None, |what, node| {
+        transform::read(report, what, node).map(Some)
+    });
+    let sized = sized?;
+    let to_world = place(to_world?, &sized);
+    let written = fields
+        .get("transform")
+        .or(fields.get("shape"))
+        .unwrap_or(node);
+    transform::check(report, written.place, &to_world)?;
+    let name = name?.unwrap_or_else(|| format!("{} #{index}", shape_name(&sized.shape)));
+    Some(Named {
+        name,
+        value: Object {
+            shape: sized.shape,
+            material: material?,
+            size: sized.size,
+            to_world,
+        },
+    })
+}
+
+/// Transform after centre after size. Where one of them is the identity it is left out, because
+/// multiplying by it could still change the sign of a zero.
+fn place(transform: Option<Affine>, sized: &Sized) -> Affine {
+    let steps = [
+        (sized.size != DVec3::ONE).then(|| Affine::scale(sized.size)),
+        (sized.center != DVec3::ZERO).then(|| Affine::translate(sized.center)),
+        transform,
+    ];
+    steps
+        .into_iter()
+        .flatten()
+        .reduce(|first, then| then.after(&first))
+        .unwrap_or(Affine::IDENTITY)
+}
+
+fn shape_name(shape: &Shape) -> &'static str {
+    match shape {
+        Shape::Sphere => "sphere",
+        Shape::Cube => "cube",
+        Shape::Cylinder => "cylinder",
+        Shape::Disk => "disk",
+        Shape::Rectangle => "rectangle",
+        Shape::Plane => "plane",
+        Shape::Implicit(Implicit { surface, .. }) => match surface {
+            ImplicitSurface::Heart => "heart",
+            ImplicitSurface::Mitchell => "mitchell",
+        },
+    }
+}
+
+fn shape(report: &Report, node: &Node) -> Option<Sized> {
+    match &node.value {
+        Value::Text(_) => {
+            let choices = [
+                ("sphere", Shape::Sphere),
+                ("cube", Shape::Cube),
+                ("cylinder", Shape::Cylinder),
+                ("disk", Shape::Disk),
+                ("rectangle", Shape::Rectangle),
+                ("plane", Shape::Plane),
+            ];
+            let shapes: Vec<(&str, &Shape)> = choices.iter().map(|(n, s)| (*n, s)).collect();
+            let shape = report.choice("object.shape", node, &shapes)?.clone();
+            Some(plain(shape, DVec3::ONE))
+        }
+        Value::Table(table) if table.get("implicit").is_some() => implicit(report, node),
+        Value::Table(_) => {
+            let fields = Fields::open(report, "object.shape", node, SHAPES)?;
+            let (kind, inner) = fields.exactly_one(SHAPES)?;
+            sized(report, kind, inner)
+        }
+        _ => report.wrong_type(
+            "object.shape",
+            node,
+            &format!("the name of a shape or a table with {}", one_of(SHAPES)),
+        ),
+    }
+}
+
+fn plain(shape: Shape, size: DVec3) -> Sized {
+    Sized {
+        shape,
+        size,
+        center: DVec3::ZERO,
+    }
+}
+
+/// Shapes with sizes; each is canonical coordinates times half its extent.
+fn sized(report: &Report, kind: &str, node: &Node) -> Option<Sized> {
+    let open = |keys: &[&str]| Fields::open(report, format!("object.shape.{kind}"), node, keys);
+    let length = |fields: &Fields<'_>, key: &str, default: f64| {
+        fields.optional(key, default, |what, node| report.positive(what, node))
+    };
+    match kind {
+        "sphere" => {
+            let fields = open(&["radius", "center"])?;
+            let radius = length(&fields, "radius", 1.0);
+            let center = fields.optional("center", DVec3::ZERO, |what, node| {
+                report.vector(what, node)
+            });
+            Some(Sized {
+                shape: Shape::Sphere,
+                size: DVec3::splat(radius?),
+                center: center?,
+            })
+        }
+        "cube" => {
+            let fields = open(&["side", "size"])?;
+            let extent = match fields.at_most_one(&["side", "size"])? {
+                Some(("size", node)) => {
+                    DVec3::from_array(lengths(report, &fields.path("size"), node)?)
+                }
+                _ => DVec3::splat(length(&fields, "side", 2.0)?),
+            };
+            Some(plain(Shape::Cube, extent / 2.0))
+        }
+        "cylinder" => {
+            let fields = open(&["radius", "height"])?;
+            let radius = length(&fields, "radius", 1.0);
+            let height = length(&fields, "height", 2.0);
+            let (radius, half) = (radius?, height? / 2.0);
+            Some(plain(Shape::Cylinder, DVec3::new(radius, radius, half)))
+        }
+        "disk" => {
+            let fields = open(&["radius"])?;
+            let radius = length(&fields, "radius", 1.0)?;
+            Some(plain(Shape::Disk, DVec3::new(radius, radius, 1.0)))
+        }
+        "rectangle" => {
+            let fields = open(&["size"])?;
+            let [width, height] =
+                fields.optional("size", [2.0, 2.0], |what, node| lengths(report, what, node))?;
+            Some(plain(
+                Shape::Rectangle,
+                DVec3::new(width / 2.0, height / 2.0, 1.0),
+            ))
+        }
+        _ => {
+            open(&[])?;
+            Some(plain(Shape::Plane, DVec3::ONE))
+        }
+    }
+}
+
+/// `N` numbers above zero.
+fn lengths<const N: usize>(report: &Report, what: &str, node: &Node) -> Option<[f64; N]> {
+    let numbers = report.numbers(what, node)?;
+    if let Value::List(nodes) = &node.value {
+        for (i, node) in nodes.iter().enumerate() {
+            report.positive(&format!("{what}[{i}]"), node)?;
+        }
+    }
+    Some(numbers)
+}
+
+fn implicit(report: &Report, node: &Node) -> Option<Sized> {
+    let mut keys = SHAPES.to_vec();
+    keys.extend(["inside", "steps"]);
+    let fields = Fields::open(report, "object.shape", node, &keys)?;
+    let (_, name) = fields.exactly_one(SHAPES)?;
+    let surface = report.choice("object.shape.implicit", name, SURFACES);
+    let half = match surface {
+        Some(ImplicitSurface::Mitchell) => 3.0,
+        _ => 1.5,
+    };
+    let default = [DVec3::splat(-half), DVec3::splat(half)];
+    let inside = fields.optional("inside", default, |what, node| clip_box(report, what, node));
+    let steps = fields.optional("steps", STEPS, |what, node| {
+        report.count(what, node, 1..=MOST_STEPS)
+    });
+    let shape = Shape::Implicit(Implicit {
+        surface: surface?,
+        inside: inside?,
+        steps: steps?,
+    });
+    Some(plain(shape, DVec3::ONE))
+}
+
+fn clip_box(report: &Report, what: &str, node: &Node) -> Option<[DVec3; 2]> {
+    let expected = "[[x, y, z], [x, y, z]], the lower and the upper corner of a box";
+    let nodes = report.list(what, node, expected)?;
+    let [low, high] = nodes else {
+        let message = format!("{what} has {} entries", nodes.len());
+        return report.fail(Complaint::new(node.place, message).expected(expected));
+    };
+    let low = report.vector(&format!("{what}[0]"), low);
+    let high = report.vector(&format!("{what}[1]"), high);
+    let (low, high) = (low?, high?);
+    if low.cmplt(high).all() {
+        return Some([low, high]);
+    }
+    report.fail(
+        Complaint::new(node.place, format!("{what} is a box without inside")).expected(expected),
+    )
+}

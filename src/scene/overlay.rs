@@ -1,0 +1,240 @@
+//! Laying panels and `--set` arguments over the file.
+
+use super::fields::{Complaint, Report};
+use super::tree::{self, Entry, Node, Place, Table, Value};
+
+/// Keys that exclude each other. When something laid over brings one of them, the others give
+/// way, so that a panel can turn a diffuse wall into a mirror without a contradiction.
+const RIVALS: &[&[&str]] = &[
+    &["diffuse", "mirror", "glass", "checkerboard", "black"],
+    &["fov", "orthographic"],
+    &[
+        "table",
+        "csv",
+        "blackbody",
+        "rgb",
+        "name",
+        "constant",
+        "radiance",
+    ],
+    &["ior", "cauchy", "sellmeier"],
+    &["ideal", "n"],
+    &["ideal", "k"],
+    &[
+        "sphere",
+        "cube",
+        "cylinder",
+        "disk",
+        "rectangle",
+        "plane",
+        "implicit",
+    ],
+];
+
+/// Keys that mean nothing without a rival that has given way.
+const COMPANIONS: &[(&str, &str)] = &[
+    ("checkerboard", "cell"),
+    ("table", "scale"),
+    ("csv", "scale"),
+    ("blackbody", "scale"),
+    ("rgb", "scale"),
+    ("name", "scale"),
+    ("constant", "scale"),
+    ("implicit", "inside"),
+    ("implicit", "steps"),
+];
+
+/// Deepest `--set` path.
+const DEPTH: usize = 32;
+
+/// Lays `over` over `base`: tables are merged key by key, anything else is replaced.
+pub(super) fn merge(base: &mut Table, over: &Table) {
+    for entry in &over.entries {
+        give_way(base, &entry.key);
+        match base.entries.iter_mut().find(|e| e.key == entry.key) {
+            Some(Entry {
+                node:
+                    Node {
+                        value: Value::Table(old),
+                        ..
+                    },
+                ..
+            }) if matches!(entry.node.value, Value::Table(_)) => {
+                if let Value::Table(new) = &entry.node.value {
+                    merge(old, new);
+                }
+            }
+            Some(existing) => *existing = entry.clone(),
+            None => base.entries.push(entry.clone()),
+        }
+    }
+}
+
+/// Removes the rivals of `key` (and what belongs to them) from a table it is laid over.
+fn give_way(base: &mut Table, key: &str) {
+    for group in RIVALS.iter().filter(|group| group.contains(&key)) {
+        for rival in group.iter().filter(|rival| **rival != key) {
+            if base.get(rival).is_none() {
+                continue;
+            }
+            base.entries.retain(|e| e.key != *rival);
+            for (_, companion) in COMPANIONS.iter().filter(|(owner, _)| owner == rival) {
+                base.entries.retain(|e| e.key != *companion);
+            }
+        }
+    }
+}
+
+/// One `--set` argument.
+#[derive(Debug, Clone)]
+pub(super) struct Setting {
+    path: Vec<String>,
+    key_place: Place,
+    node: Node,
+}
+
+impl Setting {
+    /// Reads `key` and `value`; the argument's text is `key=value`, its origin `origin`.
+    pub fn parse(report: &Report, origin: usize, key: &str, value: &str) -> Option<Self> {
+        let key_place = Place {
+            origin,
+            start: 0,
+            end: key.len(),
+        };
+        let Ok(keys) = toml_edit::Key::parse(key) else {
+            let complaint = Complaint::new(key_place, format!("\"{key}\" is not a path"));
+            return report.fail(complaint.expected("dotted keys, such as camera.lens.radius=0.3"));
+        };
+        if keys.len() > DEPTH {
+            let complaint = Complaint::new(key_place, format!("path of {} keys", keys.len()));
+            return report.fail(complaint.expected(format!("at most {DEPTH} keys")));
+        }
+        Some(Self {
+            path: keys.iter().map(|key| key.get().to_owned()).collect(),
+            key_place,
+            node: parse_value(report, key_place, value)?,
+        })
+    }
+
+    /// Whether it changes a panel rather than the file's own scene.
+    pub fn is_for_panels(&self) -> bool {
+        self.path.first().is_some_and(|key| key == "panel")
+    }
+
+    /// Lays the value over the document; tables on the way are made where there are none.
+    pub fn apply(&self, report: &Report, root: &mut Table) {
+        if let Some((last, way)) = self.path.split_last() {
+            self.descend(report, root, way, last, 0);
+        }
+    }
+
+    fn descend(
+        &self,
+        report: &Report,
+        table: &mut Table,
+        way: &[String],
+        last: &str,
+        depth: usize,
+    ) {
+        let Some((key, way)) = way.split_first() else {
+            give_way(table, last);
+            self.put(table, last);
+            return;
+        };
+        give_way(table, key);
+        if table.get(key).is_none() {
+            table.entries.push(Entry {
+                key: key.clone(),
+                key_place: self.key_place,
+                node: Node {
+                    place: self.key_place,
+                    value: Value::Table(Table::default()),
+                },
+            });
+        }
+        if let Some(entry) = table.entries.iter_mut().find(|e| e.key == *key) {
+            self.enter(report, &mut entry.node, way, last, depth + 1);
+        }
+    }
+
+    fn put(&self, table: &mut Table, key: &str) {
+        let entry = Entry {
+            key: key.to_owned(),
+            key_place: self.key_place,
+            node: self.node.clone(),
+        };
+        match table.entries.iter_mut().find(|e| e.key == key) {
+            Some(existing) => *existing = entry,
+            None => table.entries.push(entry),
+        }
+    }
+
+    fn enter(&self, report: &Report, node: &mut Node, way: &[String], last: &str, depth: usize) {
+        let done = self.path[..depth].join(".");
+        let kind = node.kind();
+        match &mut node.value {
+            Value::Table(table) => self.descend(report, table, way, last, depth),
+            Value::List(nodes) => {
+                let (key, rest) = way
+                    .split_first()
+                    .map_or((last, None), |(key, rest)| (key.as_str(), Some(rest)));
+                let count = nodes.len();
+                let found = key.parse::<usize>().ok().and_then(|i| nodes.get_mut(i));
+                match (found, rest) {
+                    (Some(node), Some(rest)) => self.enter(report, node, rest, last, depth + 1),
+                    (Some(node), None) => *node = self.node.clone(),
+                    (None, _) => report.add(
+                        Complaint::new(self.key_place, format!("{done} has no entry \"{key}\""))
+                            .expected(match count {
+                                0 => "nothing, as the array is empty".to_owned(),
+                                _ => format!("an index from 0 to {}", count - 1),
+                            }),
+                    ),
+                }
+            }
+            _ => report.add(
+                Complaint::new(self.key_place, format!("{done} is {kind} and has no keys"))
+                    .expected("the path of a value, or of a table or array that holds it"),
+            ),
+        }
+    }
+}
+
+/// A TOML value, or a bare word as a string.
+fn parse_value(report: &Report, key_place: Place, value: &str) -> Option<Node> {
+    const BEFORE: &str = "v = ";
+    let origin = key_place.origin;
+    let begin = key_place.end + 1;
+    let place = Place {
+        origin,
+        start: begin,
+        end: begin + value.len(),
+    };
+    // Positions are shifted so that they count from the start of the argument: first the words
+    // put before the value are taken off, then the key is added.
+    let mut padded = " ".repeat(begin);
+    padded.push_str(BEFORE);
+    padded.push_str(value);
+    match tree::parse(&padded, origin, BEFORE.len()) {
+        Ok(table) if table.entries.len() == 1 => {
+            table.entries.into_iter().next().map(|entry| entry.node)
+        }
+        Ok(_) => report.fail(
+            Complaint::new(place, "the argument holds more than one value").expected("one value"),
+        ),
+        Err(_) if is_bare_word(value) => Some(Node {
+            place,
+            value: Value::Text(value.to_owned()),
+        }),
+        Err(error) => report.fail(
+            Complaint::new(place, format!("not a value: {}", error.message().trim()))
+                .expected("a TOML value, or a word"),
+        ),
+    }
+}
+
+/// Words that need no quotes: names such as N-SF11, f32, data/lamp.csv.
+fn is_bare_word(value: &str) -> bool {
+    value.starts_with(|c: char| c.is_alphabetic() || c == '_')
+        && !value.contains(|c: char| c.is_control() || "\"'[]{}=,#".contains(c))
+}

@@ -1,0 +1,295 @@
+//! Reading spectra.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use super::fields::{Complaint, Fields, Report};
+use super::file;
+use super::tree::{Node, Table, Value};
+use crate::spectrum::{self, NM_MAX, NM_MIN, RgbError, SPECTRUM_NAMES, Spectrum};
+
+/// A spectrum as written; what a colour becomes depends on where it is used.
+#[derive(Debug, Clone)]
+enum Draft {
+    Fixed(Spectrum),
+    Rgb([f64; 3]),
+}
+
+/// What a spectrum is used as, which decides the values it may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// Values in [0, 1].
+    Reflectance,
+    /// Values from 0.
+    Emission,
+    /// Real part of a refractive index: values above 0.
+    Index,
+    /// Extinction coefficient: values from 0.
+    Extinction,
+}
+
+/// Everything needed to read a spectrum: the named ones, and where files are looked for.
+pub(super) struct Spectra<'a> {
+    pub report: &'a Report,
+    base_dir: &'a Path,
+    /// `None` for a definition that has been complained of.
+    named: HashMap<String, Option<Draft>>,
+    names: Vec<String>,
+}
+
+const KINDS: &[&str] = &["table", "csv", "blackbody", "rgb", "name", "constant"];
+const KEYS: &[&str] = &[
+    "table",
+    "csv",
+    "blackbody",
+    "rgb",
+    "name",
+    "constant",
+    "scale",
+];
+const EXPECTED: &str = "a spectrum: a number, a name, or a table with one of \"table\", \"csv\", \
+                        \"blackbody\", \"rgb\", \"name\", \"constant\"";
+const SAMPLES: &str = "at least two samples [nm, value]";
+
+impl<'a> Spectra<'a> {
+    /// Reads `[spectra]`; a definition may use names defined above it.
+    pub fn read(report: &'a Report, base_dir: &'a Path, node: Option<&Node>) -> Self {
+        let mut spectra = Self {
+            report,
+            base_dir,
+            named: HashMap::new(),
+            names: SPECTRUM_NAMES.map(str::to_owned).to_vec(),
+        };
+        let Some(node) = node else { return spectra };
+        let Value::Table(table) = &node.value else {
+            report.wrong_type::<()>("spectra", node, "a table of named spectra");
+            return spectra;
+        };
+        for entry in &table.entries {
+            if Spectrum::named(&entry.key).is_some() {
+                let message = format!("\"{}\" is the name of a standard spectrum", entry.key);
+                report.add(Complaint::new(entry.key_place, message).expected("a name of your own"));
+                continue;
+            }
+            let draft = spectra.draft(&format!("spectra.{}", entry.key), &entry.node);
+            spectra.named.insert(entry.key.clone(), draft);
+            spectra.names.push(entry.key.clone());
+        }
+        spectra
+    }
+
+    /// Reads a spectrum and checks its values.
+    pub fn spectrum(&self, what: &str, node: &Node, role: Role) -> Option<Spectrum> {
+        let spectrum = match (self.draft(what, node)?, role) {
+            (Draft::Fixed(spectrum), _) => spectrum,
+            (Draft::Rgb(rgb), Role::Reflectance) => {
+                self.fitted(what, node, Spectrum::rgb_reflectance(rgb))?
+            }
+            (Draft::Rgb(rgb), Role::Emission) => {
+                self.fitted(what, node, Spectrum::rgb_emission(rgb))?
+            }
+            (Draft::Rgb(_), Role::Index | Role::Extinction) => {
+                let complaint = Complaint::new(node.place, format!("{what} is a colour"));
+                return self
+                    .report
+                    .fail(complaint.expected("a number, \"table\" or \"csv\""));
+            }
+        };
+        self.check(what, node, &spectrum, role)?;
+        Some(spectrum)
+    }
+
+    fn fitted(&self, what: &str, node: &Node, fit: Result<Spectrum, RgbError>) -> Option<Spectrum> {
+        let (component, expected) = match fit {
+            Ok(spectrum) => return Some(spectrum),
+            Err(RgbError::Reflectance(c)) => (c, "components between 0 and 1"),
+            Err(RgbError::Emission(c)) => (c, "finite components of at least 0"),
+        };
+        let message = format!("{what} has the colour component {component}");
+        self.report
+            .fail(Complaint::new(node.place, message).expected(expected))
+    }
+
+    fn check(&self, what: &str, node: &Node, spectrum: &Spectrum, role: Role) -> Option<()> {
+        let (low, high) = (spectrum.min_value(), spectrum.max_value());
+        let fail = |value: f64, expected: &str| {
+            let message = if matches!(spectrum, Spectrum::Constant(_)) {
+                format!("{what} is {value}")
+            } else {
+                format!("{what} has the value {value}")
+            };
+            self.report
+                .fail(Complaint::new(node.place, message).expected(expected))
+        };
+        match role {
+            Role::Reflectance if low < 0.0 => fail(low, "a reflectance between 0 and 1"),
+            Role::Reflectance if high > 1.0 => fail(high, "a reflectance between 0 and 1"),
+            Role::Emission | Role::Extinction if low < 0.0 => fail(low, "values of at least 0"),
+            Role::Index if low <= 0.0 => fail(
+                low,
+                &format!("values greater than 0 at all wavelengths from {NM_MIN} to {NM_MAX} nm"),
+            ),
+            _ if !high.is_finite() => fail(high, "finite values"),
+            _ => Some(()),
+        }
+    }
+
+    fn draft(&self, what: &str, node: &Node) -> Option<Draft> {
+        match &node.value {
+            Value::Integer(_) | Value::Float(_) => {
+                let value = self.report.number(what, node)?;
+                Some(Draft::Fixed(Spectrum::Constant(value)))
+            }
+            Value::Text(name) => self.by_name(what, node, name, 1.0),
+            Value::Table(_) => self.described(what, node),
+            _ => self.report.wrong_type(what, node, EXPECTED),
+        }
+    }
+
+    fn by_name(&self, what: &str, node: &Node, name: &str, scale: f64) -> Option<Draft> {
+        if let Some(spectrum) = Spectrum::named(name) {
+            return self.scaled(what, node, Draft::Fixed(spectrum), scale);
+        }
+        if let Some(draft) = self.named.get(name) {
+            return self.scaled(what, node, draft.clone()?, scale);
+        }
+        let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
+        let message = format!("{what} names the unknown spectrum \"{name}\"");
+        self.report.unknown(node.place, message, name, &names)
+    }
+
+    fn described(&self, what: &str, node: &Node) -> Option<Draft> {
+        let fields = Fields::open(self.report, what, node, KEYS)?;
+        let scale = fields.optional("scale", 1.0, |what, node| self.report.number(what, node));
+        let (kind, inner) = fields.exactly_one(KINDS)?;
+        let path = fields.path(kind);
+        let draft = match kind {
+            "table" => Draft::Fixed(Spectrum::Table(self.table(&path, inner)?)),
+            "csv" => Draft::Fixed(Spectrum::Table(self.csv(&path, inner)?)),
+            "blackbody" => Draft::Fixed(Spectrum::Blackbody {
+                kelvin: self.report.positive(&path, inner)?,
+                scale: 1.0,
+            }),
+            "rgb" => Draft::Rgb(self.report.numbers(&path, inner)?),
+            "name" => {
+                let name = self.report.text(&path, inner)?;
+                return self.by_name(&path, inner, name, scale?);
+            }
+            _ => Draft::Fixed(Spectrum::Constant(self.report.number(&path, inner)?)),
+        };
+        self.scaled(what, node, draft, scale?)
+    }
+
+    fn scaled(&self, what: &str, node: &Node, draft: Draft, factor: f64) -> Option<Draft> {
+        let (draft, finite) = match draft {
+            Draft::Rgb(rgb) => {
+                let rgb = rgb.map(|c| c * factor);
+                (Draft::Rgb(rgb), rgb.iter().all(|c| c.is_finite()))
+            }
+            Draft::Fixed(spectrum) => {
+                let scaled = spectrum.scaled(factor);
+                let finite = scaled.min_value().is_finite() && scaled.max_value().is_finite();
+                (Draft::Fixed(scaled), finite)
+            }
+        };
+        if finite {
+            return Some(draft);
+        }
+        let message = format!("{what} overflows when multiplied by {factor}");
+        self.report
+            .fail(Complaint::new(node.place, message).expected("finite values"))
+    }
+
+    fn table(&self, what: &str, node: &Node) -> Option<spectrum::Table> {
+        let rows = self.report.list(what, node, SAMPLES)?;
+        if rows.len() < 2 {
+            let message = match rows.len() {
+                0 => format!("{what} is empty"),
+                _ => format!("{what} has only one sample"),
+            };
+            return self
+                .report
+                .fail(Complaint::new(node.place, message).expected(SAMPLES));
+        }
+        let mut nm = Vec::with_capacity(rows.len());
+        let mut values = Vec::with_capacity(rows.len());
+        for (i, row) in rows.iter().enumerate() {
+            let [wavelength, value] = self.report.numbers(&format!("{what}[{i}]"), row)?;
+            if let Err((message, expected)) = check_wavelength(nm.last(), wavelength) {
+                let message = format!("{what}[{i}]: {message}");
+                return self
+                    .report
+                    .fail(Complaint::new(row.place, message).expected(expected));
+            }
+            nm.push(wavelength);
+            values.push(value);
+        }
+        Some(spectrum::Table { nm, values })
+    }
+
+    fn csv(&self, what: &str, node: &Node) -> Option<spectrum::Table> {
+        let name = self.report.text(what, node)?;
+        let fail = |message: String, expected: &str| {
+            let message = format!("{what}: {message}");
+            self.report
+                .fail(Complaint::new(node.place, message).expected(expected))
+        };
+        let bytes = match file::read_bytes(&self.base_dir.join(name)) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                let error = error.to_string();
+                let first = error.lines().next().unwrap_or_default();
+                let message = first.trim_start_matches("error: ").to_owned();
+                return fail(message, "a file relative to the scene file");
+            }
+        };
+        let rows = "rows of two finite numbers, wavelength in nm (increasing) and value";
+        let Ok(text) = String::from_utf8(bytes) else {
+            return fail(format!("{name} is not UTF-8 text"), rows);
+        };
+        let table = match spectrum::Table::from_csv(&text) {
+            Ok(table) => table,
+            Err(error) => return fail(format!("{name}: {error}"), rows),
+        };
+        if table.nm.len() < 2 {
+            return fail(format!("{name} has only one sample"), SAMPLES);
+        }
+        match table.nm.first() {
+            Some(first) if *first <= 0.0 => {
+                let message = format!("{name}: the wavelength {first} nm is not positive");
+                fail(message, "wavelengths greater than 0 nm")
+            }
+            _ => Some(table),
+        }
+    }
+}
+
+/// The rules a further wavelength of a table has to keep, or what is wrong and what was expected.
+fn check_wavelength(previous: Option<&f64>, wavelength: f64) -> Result<(), (String, &'static str)> {
+    if wavelength <= 0.0 {
+        let message = format!("the wavelength {wavelength} nm is not positive");
+        return Err((message, "wavelengths greater than 0 nm"));
+    }
+    match previous {
+        Some(previous) if wavelength <= *previous => Err((
+            format!("the wavelength {wavelength} nm follows {previous} nm"),
+            "strictly increasing wavelengths",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Reads `environment = SPECTRUM` or `[environment] radiance = SPECTRUM`.
+pub(super) fn environment(spectra: &Spectra<'_>, root: &Table) -> Option<Option<Spectrum>> {
+    let Some(node) = root.get("environment") else {
+        return Some(None);
+    };
+    let read = |what: &str, node: &Node| spectra.spectrum(what, node, Role::Emission);
+    match &node.value {
+        Value::Table(table) if table.get("radiance").is_some() || table.entries.is_empty() => {
+            let fields = Fields::open(spectra.report, "environment", node, &["radiance"])?;
+            fields.required("radiance", EXPECTED, read).map(Some)
+        }
+        _ => read("environment", node).map(Some),
+    }
+}

@@ -1,0 +1,176 @@
+//! The TOML document as a tree in which every key and value knows where it was written.
+//!
+//! Panels and `--set` lay parts of other origins over the file's own, so a place is a pair of
+//! origin and byte range.
+
+use toml_edit::{Document, Item, TableLike, TomlError};
+
+use super::error::Diagnostic;
+
+/// Where something was written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Place {
+    /// Index into [`Origins`]; 0 is the file.
+    pub origin: usize,
+    /// First byte.
+    pub start: usize,
+    /// One past the last byte.
+    pub end: usize,
+}
+
+/// The texts that places refer to, with the names they go by in messages.
+pub(super) struct Origins<'a> {
+    /// Name and text of each.
+    pub texts: Vec<(&'a str, String)>,
+}
+
+impl Origins<'_> {
+    /// A diagnostic at a place.
+    pub fn diagnostic(&self, place: Place, message: String) -> Diagnostic {
+        let (name, text) = self
+            .texts
+            .get(place.origin)
+            .map_or(("", ""), |(name, text)| (*name, text.as_str()));
+        Diagnostic::at(name, text, place.start, place.end, message)
+    }
+}
+
+/// A value and its place.
+#[derive(Debug, Clone)]
+pub(super) struct Node {
+    pub place: Place,
+    pub value: Value,
+}
+
+/// The kinds of values TOML has.
+#[derive(Debug, Clone)]
+pub(super) enum Value {
+    Integer(i64),
+    Float(f64),
+    Bool(bool),
+    Text(String),
+    Date,
+    List(Vec<Node>),
+    Table(Table),
+}
+
+/// Keys and values in the order of the file.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Table {
+    pub entries: Vec<Entry>,
+}
+
+/// A key with its value.
+#[derive(Debug, Clone)]
+pub(super) struct Entry {
+    pub key: String,
+    pub key_place: Place,
+    pub node: Node,
+}
+
+impl Node {
+    /// What the value is, for messages.
+    pub fn kind(&self) -> &'static str {
+        match &self.value {
+            Value::Integer(_) => "an integer",
+            Value::Float(_) => "a number",
+            Value::Bool(_) => "a boolean",
+            Value::Text(_) => "a string",
+            Value::Date => "a date",
+            Value::List(_) => "an array",
+            Value::Table(_) => "a table",
+        }
+    }
+}
+
+impl Table {
+    pub fn get(&self, key: &str) -> Option<&Node> {
+        self.entry(key).map(|entry| &entry.node)
+    }
+
+    pub fn entry(&self, key: &str) -> Option<&Entry> {
+        self.entries.iter().find(|entry| entry.key == key)
+    }
+}
+
+/// Reads a whole document. `shift` is subtracted from every byte position (for a document that
+/// was made from an argument by putting something before it).
+pub(super) fn parse(text: &str, origin: usize, shift: usize) -> Result<Table, TomlError> {
+    let document = Document::parse(text)?;
+    let reader = Reader { origin, shift };
+    let root = Place {
+        origin,
+        start: 0,
+        end: 0,
+    };
+    Ok(reader.table(document.as_table(), root))
+}
+
+struct Reader {
+    origin: usize,
+    shift: usize,
+}
+
+impl Reader {
+    fn place(&self, span: Option<std::ops::Range<usize>>, otherwise: Place) -> Place {
+        span.map_or(otherwise, |span| Place {
+            origin: self.origin,
+            start: span.start.saturating_sub(self.shift),
+            end: span.end.saturating_sub(self.shift),
+        })
+    }
+
+    fn table(&self, table: &dyn TableLike, place: Place) -> Table {
+        let mut entries = Vec::with_capacity(table.len());
+        for (name, item) in table.iter() {
+            let key_span = table.key(name).and_then(toml_edit::Key::span);
+            let key_place = self.place(key_span, place);
+            if let Some(node) = self.item(item, key_place) {
+                entries.push(Entry {
+                    key: name.to_owned(),
+                    key_place,
+                    node,
+                });
+            }
+        }
+        Table { entries }
+    }
+
+    fn item(&self, item: &Item, key_place: Place) -> Option<Node> {
+        let place = self.place(item.span(), key_place);
+        let value = match item {
+            Item::None => return None,
+            Item::Value(value) => return Some(self.value(value, key_place)),
+            Item::Table(table) => Value::Table(self.table(table, place)),
+            Item::ArrayOfTables(tables) => Value::List(
+                tables
+                    .iter()
+                    .map(|table| {
+                        let place = self.place(table.span(), place);
+                        Node {
+                            place,
+                            value: Value::Table(self.table(table, place)),
+                        }
+                    })
+                    .collect(),
+            ),
+        };
+        Some(Node { place, value })
+    }
+
+    fn value(&self, value: &toml_edit::Value, key_place: Place) -> Node {
+        let place = self.place(value.span(), key_place);
+        let value = match value {
+            toml_edit::Value::String(text) => Value::Text(text.value().clone()),
+            toml_edit::Value::Integer(number) => Value::Integer(*number.value()),
+            toml_edit::Value::Float(number) => Value::Float(*number.value()),
+            toml_edit::Value::Boolean(truth) => Value::Bool(*truth.value()),
+            toml_edit::Value::Datetime(_) => Value::Date,
+            toml_edit::Value::Array(list) => {
+                Value::List(list.iter().map(|v| self.value(v, place)).collect())
+            }
+            toml_edit::Value::InlineTable(table) => Value::Table(self.table(table, place)),
+        };
+        Node { place, value }
+    }
+}

@@ -1,0 +1,779 @@
+//! Scene files: what is read, and what is said when something is wrong.
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that cannot go on has failed, and the panic says where"
+)]
+
+use std::path::Path;
+
+use etalon::math::affine::Affine;
+use etalon::scene::{
+    self, Diagnostic, Light, Overrides, Projection, Scene, SceneError, Shape, Sides, Surface,
+};
+use etalon::spectrum::Spectrum;
+use etalon::spectrum::ior::{RefractiveIndex, glass_names, metal_names, named_metal};
+use glam::DVec3;
+use rand::{Rng, RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+const GOOD: &str = r#"title = "a good file"
+environment = { name = "D65", scale = 2 }
+
+[camera]
+from = [0, 1.2, 4]
+to = [0, 0.8, 0]
+fov = 40
+lens = { radius = 0.1, focus = 10.77 }
+
+[image]
+size = [700, 500]
+spp = 128
+max_depth = 32
+replicates = 16
+
+[spectra]
+paint = { table = [[400, 0.2], [500, 0.4], [700, 0.8]] }
+pale = { name = "paint", scale = 0.5 }
+
+[materials]
+white = { diffuse = 0.75 }
+painted = { diffuse = "paint" }
+silver = { mirror = "Ag" }
+lossless = { mirror = { ideal = 0.9 } }
+measured = { mirror = { n = 0.2, k = 3 } }
+glass = { glass = "N-BK7" }
+lamp = { emit = { blackbody = 5000, scale = 10 }, sides = "both" }
+floor = { checkerboard = [0.2, { rgb = [1, 0.5, 0] }], cell = 0.5 }
+
+[[object]]
+name = "box"
+shape = { cube = { side = 2 } }
+material = "white"
+transform = [{ rotate_y = 30 }, { scale = [1, 2, 1] }, { translate = [0, 1, 0] }]
+
+[[object]]
+shape = { sphere = { radius = 0.5 } }
+material = "glass"
+
+[[light]]
+point = [0, 5, 0]
+intensity = 10
+
+[[panel]]
+name = "a"
+size = [100, 100]
+spp = 32
+
+[[panel]]
+name = "b"
+camera = { fov = 20 }
+materials = { white = { mirror = "Al" } }
+"#;
+
+fn parse(text: &str) -> Result<Scene, SceneError> {
+    scene::parse("test.toml", text, Path::new(""), &Overrides::default())
+}
+
+fn parse_with(text: &str, panel: Option<&str>, set: &[(&str, &str)]) -> Result<Scene, SceneError> {
+    let options = Overrides {
+        panel: panel.map(str::to_owned),
+        set: set
+            .iter()
+            .map(|(key, value)| ((*key).to_owned(), (*value).to_owned()))
+            .collect(),
+    };
+    scene::parse("test.toml", text, Path::new(""), &options)
+}
+
+/// The good file with one passage replaced; the passage must occur exactly once.
+fn changed(passage: &str, replacement: &str) -> String {
+    assert_eq!(GOOD.matches(passage).count(), 1, "passage {passage:?}");
+    GOOD.replace(passage, replacement)
+}
+
+fn diagnostic(result: Result<Scene, SceneError>, case: &str) -> Diagnostic {
+    match result {
+        Ok(_) => panic!("accepted: {case}"),
+        Err(error) => error
+            .diagnostic()
+            .unwrap_or_else(|| panic!("no place: {case}"))
+            .clone(),
+    }
+}
+
+/// Parses a text in which `«…»` marks what the message must underline, and compares.
+fn compare(marked: &str, message: &str, suggestion: Option<&str>) -> Result<(), String> {
+    let (before, rest) = marked.split_once('«').unwrap();
+    let (inside, after) = rest.split_once('»').unwrap();
+    let text = format!("{before}{inside}{after}");
+    let found = diagnostic(parse(&text), message);
+    let line = before.matches('\n').count() + 1;
+    let wanted = Diagnostic {
+        message: message.to_owned(),
+        origin: "test.toml".to_owned(),
+        line,
+        column: before.rsplit('\n').next().unwrap().chars().count() + 1,
+        excerpt: text.lines().nth(line - 1).unwrap_or("").to_owned(),
+        indent: before.rsplit('\n').next().unwrap().chars().count(),
+        width: inside.lines().next().unwrap_or("").chars().count().max(1),
+        expected: found.expected.clone(),
+        suggestion: suggestion.map(str::to_owned),
+    };
+    if found == wanted && found.expected.is_some() {
+        return Ok(());
+    }
+    Err(format!("found\n{found}\nwanted\n{wanted}\n"))
+}
+
+fn check(marked: &str, message: &str, suggestion: Option<&str>) {
+    if let Err(difference) = compare(marked, message, suggestion) {
+        panic!("{difference}");
+    }
+}
+
+#[test]
+fn every_kind_of_mistake_is_shown_with_its_place() {
+    // Passage of the good file, its replacement with the place marked, message, suggestion.
+    #[rustfmt::skip]
+    let cases: &[(&str, &str, &str, Option<&str>)] = &[
+        // Names.
+        ("fov = 40", "«fvo» = 40", r#"unknown key "fvo" in camera"#, Some("fov")),
+        ("[[light]]", "[[«lihgt»]]", r#"unknown key "lihgt""#, Some("light")),
+        ("title =", "«tilte» =", r#"unknown key "tilte""#, Some("title")),
+        ("radius = 0.1", "«aperture» = 0.1", r#"unknown key "aperture" in camera.lens"#, None),
+        ("max_depth", "«maxdepth»", r#"unknown key "maxdepth" in image"#, Some("max_depth")),
+        ("{ diffuse = 0.75", "{ «difuse» = 0.75", r#"unknown key "difuse" in materials.white"#, Some("diffuse")),
+        ("{ cube = { side", "{ cube = { «sides»", r#"unknown key "sides" in object.shape.cube"#, Some("side")),
+        ("{ cube = {", "{ «cueb» = {", r#"unknown key "cueb" in object.shape"#, Some("cube")),
+        ("{ rotate_y", "{ «rotatey»", r#"unknown key "rotatey" in object.transform[0]"#, Some("rotate_y")),
+        ("material = \"glass\"", "material = «\"glas\"»", r#"the material "glas" is not defined"#, Some("glass")),
+        ("mirror = \"Ag\"", "mirror = «\"Agg\"»", r#"materials.silver.mirror names the unknown metal "Agg""#, Some("Ag")),
+        ("glass = \"N-BK7\"", "glass = «\"N-BK8\"»", r#"materials.glass.glass names the unknown glass "N-BK8""#, Some("N-BK7")),
+        ("diffuse = \"paint\"", "diffuse = «\"piant\"»", r#"materials.painted.diffuse names the unknown spectrum "piant""#, Some("paint")),
+        ("name = \"D65\"", "name = «\"D56\"»", r#"environment.name names the unknown spectrum "D56""#, Some("D65")),
+        ("name = \"paint\"", "name = «\"pale\"»", r#"spectra.pale.name names the unknown spectrum "pale""#, None),
+        ("pale =", "«E» =", r#""E" is the name of a standard spectrum"#, None),
+        ("spp = 128", "spp = 128\nsampler = «\"soboll\"»", r#"image.sampler is "soboll""#, Some("sobol")),
+        ("sides = \"both\"", "sides = «\"bth\"»", r#"materials.lamp.sides is "bth""#, Some("both")),
+        ("{ cube = { side = 2 } }", "«\"shpere\"»", r#"object.shape is "shpere""#, Some("sphere")),
+        ("{ cube = { side = 2 } }", "{ implicit = «\"hart\"» }", r#"object.shape.implicit is "hart""#, Some("heart")),
+        // Types.
+        ("fov = 40", "fov = «\"40\"»", "camera.fov is a string", None),
+        ("from = [0, 1.2, 4]", "from = «4»", "camera.from is an integer", None),
+        ("from = [0, 1.2, 4]", "from = «[0, 1.2]»", "camera.from has 2 entries", None),
+        ("from = [0, 1.2, 4]", "from = [0, «true», 4]", "camera.from[1] is a boolean", None),
+        ("lens = { radius = 0.1, focus = 10.77 }", "lens = «1»", "camera.lens is an integer", None),
+        ("size = [700, 500]", "size = [«700.5», 500]", "image.size[0] is 700.5", None),
+        ("spp = 128", "spp = «1979-05-27»", "image.spp is a date", None),
+        ("{ diffuse = 0.75 }", "{ diffuse = «[0.5, 0.5, 0.5]» }", "materials.white.diffuse is an array", None),
+        ("title = \"a good file\"", "title = «3»", "title is an integer", None),
+        // Missing.
+        ("[camera]\nfrom = [0, 1.2, 4]", "«[camera]»", "camera.from is missing", None),
+        ("[camera]\nfrom = [0, 1.2, 4]\nto = [0, 0.8, 0]", "«[camera]»\nfrom = [0, 1.2, 4]", "camera.to is missing", None),
+        ("lens = { radius = 0.1, focus = 10.77 }", "lens = «{ radius = 0.1 }»", "camera.lens.focus is missing", None),
+        ("[image]\nsize = [700, 500]", "«[image]»", "image.size is missing", None),
+        ("[[object]]\nshape = { sphere = { radius = 0.5 } }\nmaterial = \"glass\"", "«[[object]]»\nshape = \"sphere\"", "object.material is missing", None),
+        ("[[object]]\nshape = { sphere = { radius = 0.5 } }", "«[[object]]»", "object.shape is missing", None),
+        ("{ cube = { side = 2 } }", "«{}»", "object.shape does not say what it is", None),
+        ("mirror = { n = 0.2, k = 3 }", "mirror = «{ n = 0.2 }»", "materials.measured.mirror.k is missing", None),
+        ("{ name = \"paint\", scale = 0.5 }", "«{ scale = 0.5 }»", "spectra.pale does not say what it is", None),
+        ("[[light]]\npoint = [0, 5, 0]\nintensity = 10", "«[[light]]»\npoint = [0, 5, 0]", "light.intensity is missing", None),
+        ("[[panel]]\nname = \"a\"", "«[[panel]]»", "panel.name is missing", None),
+        // Contradictions.
+        ("fov = 40", "fov = 40\n«orthographic» = 2", r#""orthographic" contradicts "fov" in camera"#, None),
+        ("{ cube = { side = 2 } }", "{ cube = {}, «sphere» = {} }", r#""sphere" contradicts "cube" in object.shape"#, None),
+        ("{ cube = { side = 2 } }", "{ cube = { side = 1, «size» = [1, 1, 1] } }", r#""size" contradicts "side" in object.shape.cube"#, None),
+        ("{ diffuse = 0.75 }", "{ diffuse = 0.75, «mirror» = \"Ag\" }", r#""mirror" contradicts "diffuse" in materials.white"#, None),
+        ("{ diffuse = 0.75 }", "{ diffuse = 0.75, «sides» = \"both\" }", "materials.white.sides without emit", None),
+        ("{ diffuse = 0.75 }", "{ diffuse = 0.75, «cell» = 1 }", "materials.white.cell without a checkerboard", None),
+        ("{ diffuse = 0.75 }", "{ black = «false» }", "materials.white.black is not true", None),
+        ("{ ideal = 0.9 }", "{ ideal = 0.9, «k» = 1 }", r#""k" contradicts "ideal" in materials.lossless.mirror"#, None),
+        ("{ blackbody = 5000, scale = 10 }", "{ blackbody = 5000, «constant» = 10 }", r#""constant" contradicts "blackbody" in materials.lamp.emit"#, None),
+        ("intensity = 10", "«irradiance» = 10", r#""irradiance" contradicts "point" in light"#, None),
+        ("{ rotate_y = 30 }", "{ rotate_y = 30, «scale» = 2 }", r#""scale" contradicts "rotate_y" in object.transform[0]"#, None),
+        // Twice.
+        ("shape = { sphere = { radius = 0.5 } }", "name = «\"box\"»\nshape = \"sphere\"", r#"the object name "box" is used twice"#, None),
+        ("name = \"b\"", "name = «\"a\"»", r#"the panel name "a" is used twice"#, None),
+        // Numbers.
+        ("fov = 40", "fov = «nan»", "camera.fov is NaN", None),
+        ("from = [0, 1.2, 4]", "from = [0, «-inf», 4]", "camera.from[1] is infinite", None),
+        ("spp = 128", "spp = «nan»", "image.spp is NaN", None),
+        ("spp = 128", "spp = «0»", "image.spp is 0", None),
+        ("spp = 128", "spp = «16777217»", "image.spp is 16777217", None),
+        ("fov = 40", "fov = «180»", "camera.fov is 180", None),
+        ("fov = 40", "orthographic = «0»", "camera.orthographic is 0", None),
+        ("focus = 10.77", "focus = «0»", "camera.lens.focus is 0", None),
+        ("radius = 0.1,", "radius = «-0.1»,", "camera.lens.radius is -0.1", None),
+        ("to = [0, 0.8, 0]", "to = «[0, 1.2, 4]»", "camera.to is the same point as camera.from", None),
+        ("to = [0, 0.8, 0]", "to = «[0, 0.8, 4]»", "camera.up is parallel to the view direction", None),
+        ("fov = 40", "up = «[0, 0.1, 1]»\nfov = 40", "camera.up is parallel to the view direction", None),
+        ("fov = 40", "up = «[0, 0, 0]»\nfov = 40", "camera.up is the zero vector", None),
+        ("to = [0, 0.8, 0]", "to = «[1e200, 0, 0]»", "the distance from camera.from to camera.to is beyond all measure", None),
+        ("size = [700, 500]", "size = [«0», 500]", "image.size[0] is 0", None),
+        ("size = [700, 500]", "size = [700, «65537»]", "image.size[1] is 65537", None),
+        ("size = [700, 500]", "size = «[65536, 4097]»", "image.size is 65536 × 4097", None),
+        ("size = [700, 500]", "size = «[700]»", "image.size has 1 entries", None),
+        ("max_depth = 32", "max_depth = «0»", "image.max_depth is 0", None),
+        ("replicates = 16", "replicates = «65»", "image.replicates is 65", None),
+        ("spp = 128", "spp = 128\nwavelengths = «5»", "image.wavelengths is 5", None),
+        ("spp = 128", "spp = 128\nseed = «-1»", "image.seed is -1", None),
+        ("spp = 128", "spp = 128\nprecision = «\"f46\"»", r#"image.precision is "f46""#, Some("f64")),
+        ("{ diffuse = 0.75 }", "{ diffuse = «1.01» }", "materials.white.diffuse is 1.01", None),
+        ("{ diffuse = 0.75 }", "{ diffuse = «-0.1» }", "materials.white.diffuse is -0.1", None),
+        ("{ diffuse = 0.75 }", "{ diffuse = «{ rgb = [0.5, 0.5, 1.5] }» }", "materials.white.diffuse has the colour component 1.5", None),
+        ("{ diffuse = \"paint\" }", "{ diffuse = «{ name = \"paint\", scale = 2 }» }", "materials.painted.diffuse has the value 1.6", None),
+        ("{ diffuse = \"paint\" }", "{ diffuse = «\"D65\"» }", "materials.painted.diffuse has the value 1.1913462151148917", None),
+        ("{ ideal = 0.9 }", "{ ideal = «1.5» }", "materials.lossless.mirror.ideal is 1.5", None),
+        ("[0.2, { rgb", "[«2», { rgb", "materials.floor.checkerboard[0] is 2", None),
+        ("], cell = 0.5", "], cell = «0»", "materials.floor.cell is 0", None),
+        ("n = 0.2", "n = «0»", "materials.measured.mirror.n is 0", None),
+        ("k = 3", "k = «-3»", "materials.measured.mirror.k is -3", None),
+        ("scale = 10", "scale = «inf»", "materials.lamp.emit.scale is infinite", None),
+        ("blackbody = 5000", "blackbody = «0»", "materials.lamp.emit.blackbody is 0", None),
+        ("emit = { blackbody = 5000, scale = 10 }", "emit = «-1»", "materials.lamp.emit is -1", None),
+        ("{ name = \"D65\", scale = 2 }", "«{ name = \"D65\", scale = -2 }»", "environment has the value -2.3826924302297834", None),
+        ("intensity = 10", "intensity = «-10»", "light.intensity is -10", None),
+        ("point = [0, 5, 0]\nintensity = 10", "direction = «[0, 0, 0]»\nirradiance = 1", "light.direction is the zero vector", None),
+        ("glass = { glass = \"N-BK7\" }", "glass = { glass = { ior = «0.9» } }", "materials.glass.glass.ior is 0.9", None),
+        ("glass = { glass = \"N-BK7\" }", "glass = { glass = { ior = «nan» } }", "materials.glass.glass.ior is NaN", None),
+        ("glass = { glass = \"N-BK7\" }", "glass = { glass = { cauchy = «[0.9, 0.01]» } }", "materials.glass.glass.cauchy has n = 0.9771604938271605 at 360 nm", None),
+        ("glass = { glass = \"N-BK7\" }", "glass = { glass = { cauchy = «[1.5]» } }", "materials.glass.glass.cauchy has 1 entries", None),
+        ("glass = { glass = \"N-BK7\" }", "glass = { glass = { sellmeier = «{ b = [1, 0, 0], c = [0.25, 0, 0] }» } }", "materials.glass.glass.sellmeier has a resonance at 500.0 nm", None),
+        // Tables.
+        ("[[400, 0.2], [500, 0.4], [700, 0.8]]", "«[]»", "spectra.paint.table is empty", None),
+        ("[[400, 0.2], [500, 0.4], [700, 0.8]]", "«[[400, 0.2]]»", "spectra.paint.table has only one sample", None),
+        ("[500, 0.4]", "«[400, 0.4]»", "spectra.paint.table[1]: the wavelength 400 nm follows 400 nm", None),
+        ("[400, 0.2]", "«[-1, 0.2]»", "spectra.paint.table[0]: the wavelength -1 nm is not positive", None),
+        ("[500, 0.4]", "[500, «nan»]", "spectra.paint.table[1][1] is NaN", None),
+        ("[500, 0.4]", "«[500]»", "spectra.paint.table[1] has 1 entries", None),
+        // Shapes and transforms.
+        ("radius = 0.5", "radius = «-0.5»", "object.shape.sphere.radius is -0.5", None),
+        ("{ cube = { side = 2 } }", "{ cube = { size = [1, «0», 1] } }", "object.shape.cube.size[1] is 0", None),
+        ("{ cube = { side = 2 } }", "{ cylinder = { height = «-1» } }", "object.shape.cylinder.height is -1", None),
+        ("{ cube = { side = 2 } }", "{ rectangle = { size = «[1]» } }", "object.shape.rectangle.size has 1 entries", None),
+        ("{ cube = { side = 2 } }", "{ plane = { «radius» = 1 } }", r#"unknown key "radius" in object.shape.plane"#, None),
+        ("{ cube = { side = 2 } }", "{ implicit = \"heart\", inside = «[[1, 0, 0], [1, 1, 1]]» }", "object.shape.inside is a box without inside", None),
+        ("{ cube = { side = 2 } }", "{ implicit = \"heart\", steps = «0» }", "object.shape.steps is 0", None),
+        ("scale = [1, 2, 1]", "scale = [1, «0», 1]", "object.transform[1].scale[1] is 0", None),
+        ("scale = [1, 2, 1]", "scale = «0»", "object.transform[1].scale is 0", None),
+        ("scale = [1, 2, 1]", "shear = «{}»", "object.transform[1].shear is empty", None),
+        ("scale = [1, 2, 1]", "shear = { «xx» = 1 }", r#"unknown key "xx" in object.transform[1].shear"#, Some("xy")),
+        ("scale = [1, 2, 1]", "rotate = { axis = «[0, 0, 0]», angle = 1 }", "object.transform[1].rotate.axis is the zero vector", None),
+        ("scale = [1, 2, 1]", "matrix = «[[1, 0, 0, 0]]»", "object.transform[1].matrix has 1 rows", None),
+        ("scale = [1, 2, 1]", "matrix = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], «[0, 0, 1, 1]»]", "the last row of object.transform[1].matrix is not [0, 0, 0, 1]", None),
+        ("[{ rotate_y = 30 }, { scale = [1, 2, 1] }, { translate = [0, 1, 0] }]", "«[{ matrix = [[1, 2, 3, 0], [4, 5, 6, 0], [7, 8, 9, 0]] }]»", "the object's matrix is singular", None),
+        ("[{ rotate_y = 30 }, { scale = [1, 2, 1] }, { translate = [0, 1, 0] }]", "«[{ scale = 1e-200 }, { scale = 1e-200 }]»", "the object's matrix is singular", None),
+        ("[{ rotate_y = 30 }, { scale = [1, 2, 1] }, { translate = [0, 1, 0] }]", "«[{ scale = 1e200 }, { scale = 1e200 }]»", "the object's matrix has entries that are infinite", None),
+        // Panels are checked although none was asked for.
+        ("size = [100, 100]", "size = [100, «0»]", "image.size[1] is 0", None),
+        ("spp = 32", "«ssp» = 32", r#"unknown key "ssp" in panel"#, Some("spp")),
+        ("camera = { fov = 20 }", "camera = { «fovv» = 20 }", r#"unknown key "fovv" in camera"#, Some("fov")),
+        ("{ white = { mirror = \"Al\" } }", "{ white = { mirror = «\"All\"» } }", r#"materials.white.mirror names the unknown metal "All""#, Some("Al")),
+        // TOML itself.
+        ("title = \"a good file\"", "title = \"a good file«»", "invalid basic string", None),
+        ("fov = 40", "fov = 40\n«fov» = 41", "duplicate key", None),
+    ];
+    let differences: Vec<String> = cases
+        .iter()
+        .filter_map(|(passage, replacement, message, suggestion)| {
+            compare(&changed(passage, replacement), message, *suggestion).err()
+        })
+        .collect();
+    assert!(differences.is_empty(), "{}", differences.join("\n"));
+    check(
+        &changed("{ checkerboard", "«{ checkerboard").replace("], cell = 0.5 }", "] }»"),
+        "materials.floor.cell is missing",
+        None,
+    );
+    check(
+        &changed("spp = 128", "spp = 8").replace("replicates = 16", "replicates = «16»"),
+        "image.replicates is 16, but image.spp is 8",
+        None,
+    );
+    check("«»", "camera is missing", None);
+    check("a = [1,«»", "unclosed array", None);
+    check("camera = «3»\n", "camera is an integer", None);
+}
+
+#[test]
+fn the_first_mistake_in_the_file_is_the_one_shown() {
+    let text = changed("spp = 128", "spp = 0").replace("radius = 0.5", "radius = -1");
+    assert_eq!(diagnostic(parse(&text), "spp").message, "image.spp is 0");
+    // The object stands before the materials here.
+    let text = "[[object]]\nshape = \"spher\"\nmaterial = \"m\"\n[materials]\nm = { diffuse = 2 }";
+    let found = diagnostic(parse(&format!("{text}\n[camera]\n[image]")), "order");
+    assert_eq!(found.line, 2);
+}
+
+#[test]
+fn messages_look_like_those_of_rustc() {
+    let text = changed("fov = 40", "\tfvo = 40 # degrees\r");
+    assert_eq!(
+        parse(&text).unwrap_err().to_string(),
+        r#"error: unknown key "fvo" in camera
+ --> test.toml:7:2
+  |
+7 |  fvo = 40 # degrees
+  |  ^^^
+  = expected: one of "from", "to", "up", "fov", "orthographic", "lens"
+  = help: did you mean "fov"?"#
+    );
+}
+
+#[test]
+fn long_lines_are_cut_and_control_characters_are_not_shown() {
+    let text = format!(
+        "title = \"{}\" # \u{9b}\nx{} = 1",
+        "é".repeat(9000),
+        "y".repeat(9000)
+    );
+    let found = diagnostic(parse(&text), "long");
+    assert!(found.excerpt.chars().count() <= 160);
+    assert!(found.indent + found.width <= 160);
+    let text = "title = \"\" \u{1b}[31m";
+    let shown = parse(text).unwrap_err().to_string();
+    assert!(!shown.contains('\u{1b}'), "{shown:?}");
+}
+
+#[test]
+fn a_good_file_is_read_as_written() {
+    let scene = parse(GOOD).unwrap();
+    assert_eq!(scene.camera.from, DVec3::new(0.0, 1.2, 4.0));
+    assert_eq!(scene.camera.up, DVec3::Y);
+    assert_eq!(
+        scene.camera.projection,
+        Projection::Perspective { fov: 40.0 }
+    );
+    assert_eq!(scene.camera.lens.unwrap().focus, 10.77);
+    assert_eq!(scene.image.size, [700, 500]);
+    assert_eq!(scene.image.max_depth, Some(32));
+    assert_eq!(scene.image.seed, 0);
+    assert_eq!(scene.environment, Some(Spectrum::d65(2.0)));
+    let names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
+    assert_eq!(names[0], "white");
+    assert_eq!(names.len(), 8);
+    let lamp = &scene.materials[6].value;
+    assert_eq!(lamp.surface, Surface::Black);
+    assert_eq!(lamp.emission.as_ref().unwrap().sides, Sides::Both);
+    assert_eq!(
+        scene.materials[2].value.surface,
+        Surface::Conductor(named_metal("Ag").unwrap())
+    );
+    assert_eq!(
+        scene.materials[4].value.surface,
+        Surface::Conductor(RefractiveIndex::Complex {
+            n: Spectrum::Constant(0.2),
+            k: Spectrum::Constant(3.0)
+        })
+    );
+    assert_eq!(scene.objects[0].name, "box");
+    assert_eq!(scene.objects[1].name, "sphere #1");
+    assert_eq!(scene.objects[1].value.material, 5);
+    assert_eq!(scene.objects[1].value.size, DVec3::splat(0.5));
+    assert!(matches!(scene.lights[0], Light::Point { at, .. } if at == DVec3::new(0.0, 5.0, 0.0)));
+    assert_eq!(scene.source.text, GOOD);
+    assert_eq!(scene.panel, None);
+}
+
+#[test]
+fn panels_are_laid_over_the_file() {
+    assert_eq!(scene::panel_names("test.toml", GOOD).unwrap(), ["a", "b"]);
+    let a = parse_with(GOOD, Some("a"), &[]).unwrap();
+    assert_eq!((a.image.size, a.image.spp), ([100, 100], 32));
+    assert_eq!(a.image.max_depth, Some(32));
+    assert_eq!(a.panel.as_deref(), Some("a"));
+    // The mirror takes the place of the diffuse surface.
+    let b = parse_with(GOOD, Some("b"), &[]).unwrap();
+    assert_eq!(b.camera.projection, Projection::Perspective { fov: 20.0 });
+    assert!(b.camera.lens.is_some());
+    assert_eq!(
+        b.materials[0].value.surface,
+        Surface::Conductor(named_metal("Al").unwrap())
+    );
+    let wrong = diagnostic(parse_with(GOOD, Some("B1"), &[]), "panel");
+    assert_eq!(wrong.message, r#"there is no panel "B1""#);
+    assert_eq!(wrong.origin, "--panel");
+    assert_eq!(wrong.suggestion.as_deref(), Some("b"));
+    // What a panel brings may be missing from the file's own scene, if a panel is asked for.
+    let incomplete = changed("size = [700, 500]\n", "");
+    assert!(parse_with(&incomplete, Some("a"), &[]).is_err(), "panel b");
+    let incomplete = incomplete.replace("name = \"b\"\n", "name = \"b\"\nsize = [1, 1]\n");
+    assert!(parse_with(&incomplete, Some("a"), &[]).is_ok());
+    assert!(parse_with(&incomplete, None, &[]).is_err());
+}
+
+#[test]
+fn set_lays_values_over_the_file_and_the_panel() {
+    let set = [
+        ("camera.lens.radius", "0.3"),
+        ("image.sampler", "independent"),
+        ("object.0.material", "silver"),
+        ("materials.\"white\".mirror", "{ ideal = 0.5 }"),
+        ("image.spp", "64"),
+        ("panel.0.size", "[3, 4]"),
+        ("environment", "0.25"),
+    ];
+    let scene = parse_with(GOOD, Some("a"), &set).unwrap();
+    assert_eq!(scene.camera.lens.unwrap().radius, 0.3);
+    assert_eq!(scene.image.spp, 64);
+    assert_eq!(scene.image.size, [3, 4]);
+    assert_eq!(scene.objects[0].value.material, 2);
+    assert_eq!(scene.environment, Some(Spectrum::Constant(0.25)));
+    assert_eq!(
+        scene.materials[0].value.surface,
+        Surface::IdealMirror(Spectrum::Constant(0.5))
+    );
+    let no_lens = parse_with(GOOD, None, &[("camera.lens.radius", "0")]).unwrap();
+    assert_eq!(no_lens.camera.lens, None);
+    let parallel = parse_with(GOOD, None, &[("camera.orthographic", "2")]).unwrap();
+    assert_eq!(
+        parallel.camera.projection,
+        Projection::Orthographic { height: 2.0 }
+    );
+
+    #[rustfmt::skip]
+    let cases = [
+        ("camera.lens.radius", "-1", 20, "camera.lens.radius is -1", None),
+        ("camera.lens.raduis", "1", 1, r#"unknown key "raduis" in camera.lens"#, Some("radius")),
+        ("image.spp", "[1", 11, "not a value: unclosed array, expected `]`", None),
+        ("image.spp", "1\nseed = 2", 11, "the argument holds more than one value", None),
+        ("image.spp.more", "1", 1, "image.spp is an integer and has no keys", None),
+        ("object.7.material", "white", 1, r#"object has no entry "7""#, None),
+        ("object.0.material", "whit", 19, r#"the material "whit" is not defined"#, Some("white")),
+        ("image..spp", "1", 1, r#""image..spp" is not a path"#, None),
+        ("image.size", "[0, 1]", 13, "image.size[0] is 0", None),
+    ];
+    for (key, value, column, message, suggestion) in cases {
+        let found = diagnostic(parse_with(GOOD, None, &[(key, value)]), message);
+        assert_eq!(found.message, message);
+        assert_eq!((found.line, found.column), (1, column), "{message}");
+        assert_eq!(found.origin, "--set");
+        assert_eq!(found.suggestion.as_deref(), suggestion, "{message}");
+    }
+}
+
+/// The matrix of an object with this shape and transform.
+fn placed(shape: &str, transform: &str) -> Affine {
+    let text = changed("{ cube = { side = 2 } }", shape).replace(
+        "[{ rotate_y = 30 }, { scale = [1, 2, 1] }, { translate = [0, 1, 0] }]",
+        transform,
+    );
+    parse(&text).unwrap().objects[0].value.to_world
+}
+
+fn bits(affine: &Affine) -> Vec<u64> {
+    let entries = affine.rows.as_flattened();
+    entries.iter().map(|x| x.to_bits()).collect()
+}
+
+#[test]
+fn quarter_turns_are_exact() {
+    for turns in -9..=9_i32 {
+        let degrees = 90 * turns;
+        let (c, s) = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]
+            [usize::try_from(turns.rem_euclid(4)).unwrap()];
+        // Adding 0 makes −0 to 0.
+        let m = -s + 0.0;
+        let x = [[1.0, 0.0, 0.0, 0.0], [0.0, c, m, 0.0], [0.0, s, c, 0.0]];
+        let y = [[c, 0.0, s, 0.0], [0.0, 1.0, 0.0, 0.0], [m, 0.0, c, 0.0]];
+        let z = [[c, m, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+        for (name, axis, rows) in [
+            ("x", "[3, 0, 0]", x),
+            ("y", "[0, 3, 0]", y),
+            ("z", "[0, 0, 3]", z),
+        ] {
+            let plain = format!("[{{ rotate_{name} = {degrees} }}]");
+            assert_eq!(bits(&placed("\"cube\"", &plain)), bits(&Affine { rows }));
+            let about = format!("[{{ rotate = {{ axis = {axis}, angle = {degrees}.0 }} }}]");
+            assert_eq!(bits(&placed("\"cube\"", &about)), bits(&Affine { rows }));
+        }
+    }
+    let third = placed("\"cube\"", "[{ rotate_z = 210 }]");
+    assert_eq!(third.rows[1][0], -0.5);
+    let third = placed("\"cube\"", "[{ rotate_z = -60 }]");
+    assert_eq!(third.rows[0][0], 0.5);
+}
+
+#[test]
+fn a_lone_matrix_arrives_bit_for_bit() {
+    let matrix = "[[0.1, -0.0, 5e-324, 1e300], [0.30000000000000004, 3, -0.0, -0.0], [1, 2, 7, 8]";
+    for end in ["]", ", [0, 0, 0, 1]]"] {
+        let affine = placed("\"cube\"", &format!("[{{ matrix = {matrix}{end} }}]"));
+        let rows = [
+            [0.1, -0.0, 5e-324, 1e300],
+            [0.300_000_000_000_000_04, 3.0, -0.0, -0.0],
+            [1.0, 2.0, 7.0, 8.0],
+        ];
+        assert_eq!(bits(&affine), bits(&Affine { rows }));
+    }
+}
+
+#[test]
+fn transforms_act_in_the_order_written_after_size_and_centre() {
+    let affine = placed(
+        "{ sphere = { radius = 2, center = [1, 0, 0] } }",
+        "[{ rotate_z = 90 }, { translate = [0, 0, 5] }, { scale = [1, 1, -2] }, { shear = { xy = 3 } }]",
+    );
+    // Centre (1, 0, 0) → (0, 1, 0) → (0, 1, 5) → (0, 1, −10) → (3, 1, −10).
+    assert_eq!(affine.point(DVec3::ZERO), DVec3::new(3.0, 1.0, -10.0));
+    // Canonical x of radius 2 → 2 y → 6 x + 2 y.
+    assert_eq!(affine.vector(DVec3::X), DVec3::new(6.0, 2.0, 0.0));
+    assert_eq!(placed("\"sphere\"", "[]"), Affine::IDENTITY);
+}
+
+#[test]
+fn singular_is_decided_exactly() {
+    // Not singular: the determinant is 2^-52 · 2^-104.
+    let near = "[[1, 1, 0, 0], [1, 1.0000000000000002, 0, 0], [0, 0, 4.930380657631324e-32, 0]]";
+    placed("\"cube\"", &format!("[{{ matrix = {near} }}]"));
+    // Entries whose products under- and overflow.
+    placed(
+        "\"cube\"",
+        "[{ matrix = [[5e-324, 0, 0, 0], [0, 5e-324, 0, 0], [0, 0, 1.7e308, 0]] }]",
+    );
+    // Singular: proportional rows; and a third row that is the sum of the others, with products
+    // beyond 2^53, so that they are rounded in floating point.
+    for matrix in [
+        "[[0.1, 0.2, 0.3, 0], [0.2, 0.4, 0.6, 0], [1, 5, 7, 0]]",
+        "[[94906267, 94906265, 3, 0], [94906269, 94906264, 7, 0], [189812536, 189812529, 10, 0]]",
+    ] {
+        check(
+            &changed(
+                "[{ rotate_y = 30 }, { scale = [1, 2, 1] }, { translate = [0, 1, 0] }]",
+                &format!("«[{{ matrix = {matrix} }}]»"),
+            ),
+            "the object's matrix is singular",
+            None,
+        );
+    }
+}
+
+#[test]
+fn sizes_and_defaults_of_shapes() {
+    #[rustfmt::skip]
+    let cases = [
+        ("\"sphere\"", [1.0, 1.0, 1.0]),
+        ("{ sphere = { radius = 3 } }", [3.0, 3.0, 3.0]),
+        ("\"cube\"", [1.0, 1.0, 1.0]),
+        ("{ cube = {} }", [1.0, 1.0, 1.0]),
+        ("{ cube = { side = 3 } }", [1.5, 1.5, 1.5]),
+        ("{ cube = { size = [1, 2, 4] } }", [0.5, 1.0, 2.0]),
+        ("\"cylinder\"", [1.0, 1.0, 1.0]),
+        ("{ cylinder = { radius = 2, height = 6 } }", [2.0, 2.0, 3.0]),
+        ("{ disk = { radius = 4 } }", [4.0, 4.0, 1.0]),
+        ("{ rectangle = { size = [4, 6] } }", [2.0, 3.0, 1.0]),
+        ("{ plane = {} }", [1.0, 1.0, 1.0]),
+        ("{ implicit = \"mitchell\" }", [1.0, 1.0, 1.0]),
+    ];
+    for (shape, size) in cases {
+        let scene = parse(&changed("{ cube = { side = 2 } }", shape)).unwrap();
+        assert_eq!(scene.objects[0].value.size.to_array(), size, "{shape}");
+        let placed = placed(shape, "[]");
+        assert_eq!(placed, Affine::scale(DVec3::from_array(size)), "{shape}");
+    }
+    let text = changed(
+        "{ cube = { side = 2 } }",
+        "{ implicit = \"heart\", steps = 7 }",
+    );
+    let scene = parse(&text).unwrap();
+    let Shape::Implicit(heart) = &scene.objects[0].value.shape else {
+        panic!("{:?}", scene.objects[0].value.shape);
+    };
+    assert_eq!(heart.inside, [DVec3::splat(-1.5), DVec3::splat(1.5)]);
+    assert_eq!(heart.steps, 7);
+}
+
+#[test]
+fn spectra_in_every_form() {
+    let spectrum = |form: &str| {
+        let text = changed("intensity = 10", &format!("intensity = {form}"));
+        let scene = parse(&text).unwrap();
+        let Light::Point { intensity, .. } = scene.lights[0].clone() else {
+            panic!("{:?}", scene.lights[0]);
+        };
+        intensity
+    };
+    assert_eq!(spectrum("\"E\""), Spectrum::Constant(1.0));
+    assert_eq!(
+        spectrum("{ constant = 0.5, scale = 4 }"),
+        Spectrum::Constant(2.0)
+    );
+    assert_eq!(spectrum("\"D65\""), Spectrum::d65(1.0));
+    assert_eq!(
+        spectrum("{ blackbody = 3000 }"),
+        Spectrum::Blackbody {
+            kelvin: 3000.0,
+            scale: 1.0
+        }
+    );
+    assert_eq!(
+        spectrum("{ rgb = [1, 2, 3], scale = 0.5 }"),
+        Spectrum::rgb_emission([0.5, 1.0, 1.5]).unwrap()
+    );
+    let Spectrum::Table(table) = spectrum("\"pale\"") else {
+        panic!("not a table");
+    };
+    assert_eq!(table.nm, [400.0, 500.0, 700.0]);
+    assert_eq!(table.values, [0.1, 0.2, 0.4]);
+    let day = parse(&changed(
+        "environment = { name = \"D65\", scale = 2 }",
+        "environment.radiance = 3",
+    ));
+    assert_eq!(day.unwrap().environment, Some(Spectrum::Constant(3.0)));
+}
+
+#[test]
+fn data_files_are_found_beside_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene_path = folder.path().join("s.toml");
+    let csv = |text: &str| std::fs::write(folder.path().join("paint.csv"), text).unwrap();
+    let text = changed(
+        "{ table = [[400, 0.2], [500, 0.4], [700, 0.8]] }",
+        "{ csv = \"paint.csv\" }",
+    );
+    std::fs::write(&scene_path, &text).unwrap();
+    let load = || scene::load(&scene_path, &Overrides::default());
+
+    csv("# source\nnm,value\n400,0.25\n700,0.5\n");
+    let Surface::Diffuse(Spectrum::Table(table)) = &load().unwrap().materials[1].value.surface
+    else {
+        panic!("not a table");
+    };
+    assert_eq!(table.values, [0.25, 0.5]);
+    for (bad, part) in [
+        ("", "at least one sample"),
+        ("400,0.5\n", "only one sample"),
+        ("400,0.5\n300,0.5\n", "line 2"),
+        ("400,0.5\n500,nan\n", "line 2"),
+        ("0,0.5\n500,1\n", "not positive"),
+    ] {
+        csv(bad);
+        let found = diagnostic(load(), bad);
+        assert_eq!((found.line, found.column), (17, 17), "{bad:?}");
+        assert!(found.message.contains(part), "{}", found.message);
+    }
+}
+
+#[test]
+fn a_data_file_that_is_not_there_is_shown_where_it_is_named() {
+    let text = changed(
+        "{ name = \"paint\", scale = 0.5 }",
+        "{ csv = \"no/such.csv\" }",
+    );
+    let found = diagnostic(parse(&text), "csv");
+    assert_eq!((found.line, found.column), (18, 16));
+    // The rest of the message is the operating system's.
+    let words = "spectra.pale.csv: cannot read no/such.csv: ";
+    assert!(found.message.starts_with(words), "{}", found.message);
+}
+
+#[test]
+fn files_that_cannot_be_scenes() {
+    let folder = tempfile::tempdir().unwrap();
+    let load = |path: &Path| scene::load(path, &Overrides::default()).unwrap_err();
+    assert!(matches!(load(folder.path()), SceneError::Directory { .. }));
+    let path = folder.path().join("s.toml");
+    assert!(matches!(load(&path), SceneError::Unreadable { .. }));
+    std::fs::write(&path, b"title = \"ok\"\nabout = \"\xff\"\n").unwrap();
+    let error = load(&path);
+    let found = error.diagnostic().unwrap();
+    assert_eq!((found.line, found.column), (2, 10));
+    assert_eq!(found.message, "not UTF-8 text");
+    let file = std::fs::File::create(&path).unwrap();
+    file.set_len(scene::LARGEST_FILE + 1).unwrap();
+    assert!(matches!(load(&path), SceneError::TooLarge { .. }));
+    // A byte order mark is no part of the first line.
+    std::fs::write(&path, "\u{feff}titel = 1").unwrap();
+    assert_eq!(load(&path).diagnostic().unwrap().column, 1);
+}
+
+#[test]
+fn the_scenes_that_come_with_the_project_are_valid() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|e| e == "toml") {
+            count += 1;
+            if let Err(error) = scene::load(&path, &Overrides::default()) {
+                panic!("{error}");
+            }
+        }
+    }
+    assert!(count > 0);
+}
+
+#[test]
+fn the_example_of_the_format_reference_is_valid() {
+    let text = include_str!("../scenes/README.md");
+    let (_, rest) = text.split_once("```toml\n").unwrap();
+    let (example, _) = rest.split_once("```").unwrap();
+    if let Err(error) = parse(example) {
+        panic!("{error}");
+    }
+}
+
+#[test]
+fn the_format_reference_names_every_medium() {
+    let text = include_str!("../scenes/README.md");
+    for name in glass_names().chain(metal_names()) {
+        assert!(text.contains(&format!("`\"{name}\"`")), "{name}");
+    }
+}
+
+/// Whatever the text, there is a scene or a message about a place inside the text.
+fn survives(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    if let Err(error) = parse(&text) {
+        let shown = error.to_string();
+        assert!(shown.starts_with("error: "), "{shown}");
+        let found = error.diagnostic().unwrap();
+        let lines = text.matches('\n').count() + 1;
+        assert!((1..=lines).contains(&found.line), "{shown}");
+        assert!(found.column >= 1 && found.width >= 1, "{shown}");
+    }
+}
+
+#[test]
+fn damaged_files_never_panic() {
+    let bytes = GOOD.as_bytes();
+    for length in 0..bytes.len() {
+        survives(&bytes[..length]);
+    }
+    let mut random = Pcg64::seed_from_u64(1);
+    const PIECES: [&[u8]; 12] = [
+        b"nan",
+        b"-inf",
+        b"{",
+        b"}",
+        b"[",
+        b"]",
+        b"\"",
+        b"\n",
+        b"=",
+        b"1e308",
+        b"-0",
+        b"\xf0\x9f",
+    ];
+    for _ in 0..3000 {
+        let mut damaged = bytes.to_vec();
+        for _ in 0..random.random_range(1..4) {
+            let at = random.random_range(0..damaged.len());
+            match random.random_range(0..4) {
+                0 => damaged[at] = (random.next_u32() & 0xff) as u8,
+                1 => {
+                    damaged.remove(at);
+                }
+                2 => {
+                    let end = (at + random.random_range(1..20)).min(damaged.len());
+                    damaged.drain(at..end);
+                }
+                _ => {
+                    let piece = PIECES[random.random_range(0..PIECES.len())];
+                    damaged.splice(at..at, piece.iter().copied());
+                }
+            }
+        }
+        survives(&damaged);
+    }
+}
