@@ -139,12 +139,11 @@ fn start<L: Lanes, const C: usize>(
     results: &mut Results<L::Scalar, C>,
 ) {
     let mut numbers = [[0u32; PADDING]; 5];
-    let replicates = model.sequence.replicates();
+    let replicates = model.sequence.replicates;
     for (i, request) in requests.iter().enumerate() {
         numbers[0][i] = request.x;
         numbers[1][i] = request.y;
-        numbers[2][i] = request.sample % replicates;
-        numbers[3][i] = request.sample / replicates;
+        (numbers[2][i], numbers[3][i]) = replicates.place(request.sample);
         numbers[4][i] = (first + i) as u32;
     }
     let [x, y, replicate, index, slot] = numbers.map(|n| l.load_int(&n));
