@@ -1,6 +1,6 @@
 //! The scene as rays meet it.
 
-use etalon::scene::{Named, Object, Scene, Shape, Surface};
+use etalon::scene::{Implicit, Named, Object, Scene, Shape, Surface};
 use etalon::shape::implicit::baseline::{ImplicitHit, PlacedImplicit};
 use etalon::shape::{Placed, Query, ShapeKind, Start, Tally, nearest};
 use glam::DVec3;
@@ -132,11 +132,11 @@ impl Target {
 
 fn priority(scene: &Scene, object: &Named<Object>) -> u8 {
     let material = scene.materials.get(object.value.material);
-    material.is_some_and(|m| matches!(m.value.surface, Surface::Glass(_))) as u8
+    u8::from(material.is_some_and(|m| matches!(m.value.surface, Surface::Glass(_))))
 }
 
-/// The canonical shape, or the implicit surface.
-fn certified_kind(shape: &Shape) -> Result<ShapeKind, &etalon::scene::Implicit> {
+/// The canonical shape, or else the implicit surface.
+fn certified_kind(shape: &Shape) -> Result<ShapeKind, &Implicit> {
     match shape {
         Shape::Sphere => Ok(ShapeKind::Sphere),
         Shape::Cube => Ok(ShapeKind::Cube),
