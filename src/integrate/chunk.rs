@@ -98,7 +98,15 @@ pub fn render<L: Lanes, const C: usize>(
             pool.compact(l);
             while taken < requests.len() && pool.length + L::COUNT <= POOL {
                 let end = requests.len().min(taken + L::COUNT);
-                start(l, model, spectrometer, &requests[taken..end], taken, pool, results);
+                start(
+                    l,
+                    model,
+                    spectrometer,
+                    &requests[taken..end],
+                    taken,
+                    pool,
+                    results,
+                );
                 taken = end;
             }
             pool.all_alive::<L>();
@@ -152,18 +160,18 @@ fn start<L: Lanes, const C: usize>(
     let (origin, direction) = model.camera.rays(l, x, y, &sample);
 
     let at = pool.length;
-    for (field, v) in [(RealField::Origin, origin), (RealField::Direction, direction)] {
+    for (field, v) in [
+        (RealField::Origin, origin),
+        (RealField::Direction, direction),
+    ] {
         pool.set_real(l, field, 0, at, v.x);
         pool.set_real(l, field, 1, at, v.y);
         pool.set_real(l, field, 2, at, v.z);
     }
     let zero = l.real(0.0);
     pool.set_real(l, RealField::Pdf, 0, at, zero);
-    let positions = std::array::from_fn(|j| {
-        spectrometer
-            .wavelength::<L, C>(l, sample.wavelength, j)
-            .0
-    });
+    let positions =
+        std::array::from_fn(|j| spectrometer.wavelength::<L, C>(l, sample.wavelength, j).0);
     pool.set_spectral(l, SpectralField::Position, at, positions);
     pool.set_spectral(l, SpectralField::Throughput, at, [l.real(1.0); C]);
     pool.set_spectral(l, SpectralField::Radiance, at, [zero; C]);

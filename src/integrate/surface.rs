@@ -107,8 +107,8 @@ pub fn surfaces<L: Lanes>(
             out.disperses = out.disperses | here;
         }
         if let Some(emission) = shading.emission {
-            let emits = here
-                & ((front & l.mask(shading.emits[0])) | (!front & l.mask(shading.emits[1])));
+            let emits =
+                here & ((front & l.mask(shading.emits[0])) | (!front & l.mask(shading.emits[1])));
             out.emits = out.emits | emits;
             out.emission = l.select_int(emits, l.int(emission), out.emission);
             if let Some(index) = shading.light

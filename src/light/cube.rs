@@ -111,4 +111,3 @@ impl<T: Scalar> CubeLight<T> {
         area_pdf(l, direction, distance, normal, l.real(1.0) / total)
     }
 }
-

@@ -173,7 +173,11 @@ impl Sequence {
     #[inline(always)]
     pub fn camera<L: Lanes>(&self, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
         let seed = |slot: Slot, component: u32| {
-            mix(l, id.key.plus(l.int(0x9e37_79b9u32.wrapping_mul(2 * slot as u32 + component + 1))))
+            mix(
+                l,
+                id.key
+                    .plus(l.int(0x9e37_79b9u32.wrapping_mul(2 * slot as u32 + component + 1))),
+            )
         };
         let zero = l.real(0.0);
         match self.kind {
@@ -234,12 +238,7 @@ impl Sequence {
             }
             SamplerKind::Stratified => {
                 let [across, down] = self.strata;
-                let stratum = permute(
-                    l,
-                    id.index,
-                    across * down,
-                    self.slot_seed(l, id, slot),
-                );
+                let stratum = permute(l, id.index, across * down, self.slot_seed(l, id, slot));
                 let [u, v, ..] = self.independent(l, id, slot);
                 let position = l.to_real(stratum);
                 // Exact for the at most 2²⁴ strata: the quotient is at least ½/across away from
@@ -265,7 +264,11 @@ impl Sequence {
             SamplerKind::Sobol | SamplerKind::Center => {
                 let base = self.slot_seed(l, id, slot);
                 let index = sobol::shuffled(l, id.index, base);
-                l.uniform(sobol::scrambled(l, index, mix(l, base.plus(l.int(0x68bc_21eb)))))
+                l.uniform(sobol::scrambled(
+                    l,
+                    index,
+                    mix(l, base.plus(l.int(0x68bc_21eb))),
+                ))
             }
             SamplerKind::Stratified => {
                 let stratum = permute(l, id.index, self.points, self.slot_seed(l, id, slot));

@@ -11,6 +11,7 @@
 pub mod cube;
 pub mod cylinder;
 pub mod disk;
+pub mod implicit;
 pub mod ladder;
 pub mod lanes;
 pub mod line;
@@ -19,9 +20,9 @@ pub mod placed;
 pub mod plane;
 pub mod question;
 pub mod rectangle;
+pub mod resolve;
 pub mod sphere;
 mod surd;
-pub mod resolve;
 mod value;
 
 use glam::DVec3;

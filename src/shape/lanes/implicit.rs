@@ -34,12 +34,7 @@ pub struct StartSign<L: Lanes> {
 
 impl<T: Scalar> LaneImplicit<T> {
     /// Rounds a placement: clip box in object coordinates, world → object map.
-    pub fn new(
-        surface: ImplicitSurface,
-        inside: [DVec3; 2],
-        steps: u32,
-        inverse: &Affine,
-    ) -> Self {
+    pub fn new(surface: ImplicitSurface, inside: [DVec3; 2], steps: u32, inverse: &Affine) -> Self {
         let centre = (inside[0] + inside[1]) / 2.0;
         let half = (inside[1] - inside[0]) / 2.0;
         Self {
@@ -63,8 +58,7 @@ impl<T: Scalar> LaneImplicit<T> {
             }
             ImplicitSurface::Mitchell => {
                 let w = yy + zz;
-                (xx * xx + w * w) * l.real(4.0) + xx * w * l.real(17.0)
-                    - (xx + w) * l.real(20.0)
+                (xx * xx + w * w) * l.real(4.0) + xx * w * l.real(17.0) - (xx + w) * l.real(20.0)
                     + l.real(17.0)
             }
         }
