@@ -33,9 +33,11 @@ pub fn build<T: Scalar>(
 ) -> Result<(Model<T>, Spectrometer<T>), PlanError> {
     let mut builder = Builder::<T>::default();
     for (index, object) in scene.objects.iter().enumerate() {
-        let placed = builder.place(scene, index).ok_or(PlanError::NotInvertible {
-            name: object.name.clone(),
-        })?;
+        let placed = builder
+            .place(scene, index)
+            .ok_or(PlanError::NotInvertible {
+                name: object.name.clone(),
+            })?;
         builder.dress(scene, index, &placed);
     }
     for light in &scene.lights {
@@ -338,8 +340,7 @@ fn area_light<T: Scalar>(
         }
         Shape::Cube => {
             let normals = [normal(0), normal(1), normal(2)];
-            let area =
-                8.0 * (a.cross(b).length() + b.cross(c).length() + c.cross(a).length());
+            let area = 8.0 * (a.cross(b).length() + b.cross(c).length() + c.cross(a).length());
             Some((
                 LightShape::Cube(CubeLight::new(centre, [a, b, c], normals, emits)),
                 area,

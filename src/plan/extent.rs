@@ -34,9 +34,11 @@ pub fn bounds(shape: &Shape, to_world: &Affine) -> Option<Bounds> {
     };
     let centre = to_world.point((low + high) / 2.0);
     let half = (high - low) / 2.0;
-    let reach = DVec3::from_array(to_world.rows.map(|row| {
-        row[0].abs() * half.x + row[1].abs() * half.y + row[2].abs() * half.z
-    }));
+    let reach = DVec3::from_array(
+        to_world
+            .rows
+            .map(|row| row[0].abs() * half.x + row[1].abs() * half.y + row[2].abs() * half.z),
+    );
     Some(Bounds {
         low: centre - reach,
         high: centre + reach,
@@ -90,11 +92,7 @@ pub fn perpendicular(a: DVec3, b: DVec3) -> bool {
 pub fn is_similarity(to_world: &Affine) -> bool {
     let [a, b, c] = columns(to_world);
     let same = |x: DVec3, y: DVec3| (x.length() - y.length()).abs() <= ROUNDED * x.length();
-    same(a, b)
-        && same(a, c)
-        && perpendicular(a, b)
-        && perpendicular(b, c)
-        && perpendicular(c, a)
+    same(a, b) && same(a, c) && perpendicular(a, b) && perpendicular(b, c) && perpendicular(c, a)
 }
 
 /// Pairs are compared up to this many objects; larger scenes are dense, and the pixel decides.
@@ -138,7 +136,11 @@ pub fn smallest_gap(scene: &Scene) -> Option<f64> {
 ///
 /// A point goes to object coordinates and back: with |o| up to the scene's reach s, the local
 /// error E of `shape::lanes` times the row sums of the map, plus the rounding of the result.
-pub fn worst_error(scene: &Scene, roundoff: f64, inverse_of: impl Fn(&Affine) -> Option<Affine>) -> Error {
+pub fn worst_error(
+    scene: &Scene,
+    roundoff: f64,
+    inverse_of: impl Fn(&Affine) -> Option<Affine>,
+) -> Error {
     let reach = scene
         .objects
         .iter()

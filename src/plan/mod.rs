@@ -38,7 +38,9 @@ pub enum Tables {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlanError {
     /// A transform that is invertible on paper but not in the range of f64.
-    #[error("object \"{name}\": its transform cannot be inverted in double precision about the camera")]
+    #[error(
+        "object \"{name}\": its transform cannot be inverted in double precision about the camera"
+    )]
     NotInvertible {
         /// The object's name.
         name: String,

@@ -109,7 +109,10 @@ impl Tile {
             requests.clear();
             while requests.len() < CHUNK && pixel < pixels {
                 let end = to.min(sample.saturating_add((CHUNK - requests.len()) as u32));
-                let (x, y) = (self.window.x0 + pixel % width, self.window.y0 + pixel / width);
+                let (x, y) = (
+                    self.window.x0 + pixel % width,
+                    self.window.y0 + pixel / width,
+                );
                 requests.extend((sample..end).map(|sample| chunk::Request { x, y, sample }));
                 sample = end;
                 if sample == to {

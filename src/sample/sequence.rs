@@ -170,113 +170,131 @@ impl Sequence {
     }
 
     /// The camera's numbers, stratified together.
-    #[inline(always)]
+    #[inline(never)]
     pub fn camera<L: Lanes>(&self, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
-        let seed = |slot: Slot, component: u32| {
-            mix(
-                l,
-                id.key
-                    .plus(l.int(0x9e37_79b9u32.wrapping_mul(2 * slot as u32 + component + 1))),
-            )
-        };
-        let zero = l.real(0.0);
-        match self.kind {
-            SamplerKind::Sobol | SamplerKind::Center => {
-                let coordinate = |dimension: usize, slot: Slot, component: u32| {
-                    let digits = sobol::digits(l, dimension, id.index, self.bits);
-                    l.uniform(sobol::scrambled(l, digits, seed(slot, component)))
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let seed = |slot: Slot, component: u32| {
+                    mix(
+                        l,
+                        id.key.plus(
+                            l.int(0x9e37_79b9u32.wrapping_mul(2 * slot as u32 + component + 1)),
+                        ),
+                    )
                 };
-                let pixel = if self.kind == SamplerKind::Center {
-                    [l.real(0.5); 2]
-                } else {
-                    [coordinate(0, Slot::Pixel, 0), coordinate(1, Slot::Pixel, 1)]
-                };
-                CameraSample {
-                    pixel,
-                    wavelength: coordinate(2, Slot::Wavelength, 0),
-                    lens: if lens {
-                        [coordinate(3, Slot::Lens, 0), coordinate(4, Slot::Lens, 1)]
-                    } else {
-                        [zero; 2]
-                    },
+                let zero = l.real(0.0);
+                match self.kind {
+                    SamplerKind::Sobol | SamplerKind::Center => {
+                        let coordinate = |dimension: usize, slot: Slot, component: u32| {
+                            let digits = sobol::digits(l, dimension, id.index, self.bits);
+                            l.uniform(sobol::scrambled(l, digits, seed(slot, component)))
+                        };
+                        let pixel = if self.kind == SamplerKind::Center {
+                            [l.real(0.5); 2]
+                        } else {
+                            [coordinate(0, Slot::Pixel, 0), coordinate(1, Slot::Pixel, 1)]
+                        };
+                        CameraSample {
+                            pixel,
+                            wavelength: coordinate(2, Slot::Wavelength, 0),
+                            lens: if lens {
+                                [coordinate(3, Slot::Lens, 0), coordinate(4, Slot::Lens, 1)]
+                            } else {
+                                [zero; 2]
+                            },
+                        }
+                    }
+                    SamplerKind::Independent | SamplerKind::Stratified => {
+                        let depth = l.int(0);
+                        let wavelength = if self.kind == SamplerKind::Stratified {
+                            let slot = Slot::Wavelength.at(l, depth);
+                            let stratum =
+                                permute(l, id.index, self.points, self.slot_seed(l, id, slot));
+                            let [jitter, ..] = self.independent(l, id, slot);
+                            self.jittered(l, stratum, jitter, self.points)
+                        } else {
+                            self.independent(l, id, Slot::Wavelength.at(l, depth))[0]
+                        };
+                        CameraSample {
+                            pixel: self.pair(l, id, Slot::Pixel.at(l, depth)),
+                            wavelength,
+                            lens: if lens {
+                                self.pair(l, id, Slot::Lens.at(l, depth))
+                            } else {
+                                [zero; 2]
+                            },
+                        }
+                    }
                 }
-            }
-            SamplerKind::Independent | SamplerKind::Stratified => {
-                let depth = l.int(0);
-                let wavelength = if self.kind == SamplerKind::Stratified {
-                    let slot = Slot::Wavelength.at(l, depth);
-                    let stratum = permute(l, id.index, self.points, self.slot_seed(l, id, slot));
-                    let [jitter, ..] = self.independent(l, id, slot);
-                    self.jittered(l, stratum, jitter, self.points)
-                } else {
-                    self.independent(l, id, Slot::Wavelength.at(l, depth))[0]
-                };
-                CameraSample {
-                    pixel: self.pair(l, id, Slot::Pixel.at(l, depth)),
-                    wavelength,
-                    lens: if lens {
-                        self.pair(l, id, Slot::Lens.at(l, depth))
-                    } else {
-                        [zero; 2]
-                    },
-                }
-            }
-        }
+            },
+        )
     }
 
     /// Two numbers of a padded slot.
-    #[inline(always)]
+    #[inline(never)]
     pub fn pair<L: Lanes>(&self, l: L, id: Identity<L>, slot: L::Int) -> [L::Real; 2] {
-        match self.kind {
-            SamplerKind::Sobol | SamplerKind::Center => {
-                let base = self.slot_seed(l, id, slot);
-                let index = sobol::shuffled(l, id.index, base);
-                let first = sobol::scrambled(l, index, mix(l, base.plus(l.int(0x68bc_21eb))));
-                let digits = sobol::digits(l, 1, index, 32);
-                let second = sobol::scrambled(l, digits, mix(l, base.plus(l.int(0x02e5_be93))));
-                [l.uniform(first), l.uniform(second)]
-            }
-            SamplerKind::Stratified => {
-                let [across, down] = self.strata;
-                let stratum = permute(l, id.index, across * down, self.slot_seed(l, id, slot));
-                let [u, v, ..] = self.independent(l, id, slot);
-                let position = l.to_real(stratum);
-                // Exact for the at most 2²⁴ strata: the quotient is at least ½/across away from
-                // the integer that would be rounded to.
-                let row = ((position + l.real(0.5)) / l.real(across.into())).floor();
-                let column = (-row).mul_add(l.real(across.into()), position);
-                [
-                    self.below_one(l, (column + u) / l.real(across.into())),
-                    self.below_one(l, (row + v) / l.real(down.into())),
-                ]
-            }
-            SamplerKind::Independent => {
-                let [u, v, ..] = self.independent(l, id, slot);
-                [u, v]
-            }
-        }
+        l.vectorize(
+            #[inline(always)]
+            || {
+                match self.kind {
+                    SamplerKind::Sobol | SamplerKind::Center => {
+                        let base = self.slot_seed(l, id, slot);
+                        let index = sobol::shuffled(l, id.index, base);
+                        let first =
+                            sobol::scrambled(l, index, mix(l, base.plus(l.int(0x68bc_21eb))));
+                        let digits = sobol::digits(l, 1, index, 32);
+                        let second =
+                            sobol::scrambled(l, digits, mix(l, base.plus(l.int(0x02e5_be93))));
+                        [l.uniform(first), l.uniform(second)]
+                    }
+                    SamplerKind::Stratified => {
+                        let [across, down] = self.strata;
+                        let stratum =
+                            permute(l, id.index, across * down, self.slot_seed(l, id, slot));
+                        let [u, v, ..] = self.independent(l, id, slot);
+                        let position = l.to_real(stratum);
+                        // Exact for the at most 2²⁴ strata: the quotient is at least ½/across away from
+                        // the integer that would be rounded to.
+                        let row = ((position + l.real(0.5)) / l.real(across.into())).floor();
+                        let column = (-row).mul_add(l.real(across.into()), position);
+                        [
+                            self.below_one(l, (column + u) / l.real(across.into())),
+                            self.below_one(l, (row + v) / l.real(down.into())),
+                        ]
+                    }
+                    SamplerKind::Independent => {
+                        let [u, v, ..] = self.independent(l, id, slot);
+                        [u, v]
+                    }
+                }
+            },
+        )
     }
 
     /// One number of a padded slot.
-    #[inline(always)]
+    #[inline(never)]
     pub fn single<L: Lanes>(&self, l: L, id: Identity<L>, slot: L::Int) -> L::Real {
-        match self.kind {
-            SamplerKind::Sobol | SamplerKind::Center => {
-                let base = self.slot_seed(l, id, slot);
-                let index = sobol::shuffled(l, id.index, base);
-                l.uniform(sobol::scrambled(
-                    l,
-                    index,
-                    mix(l, base.plus(l.int(0x68bc_21eb))),
-                ))
-            }
-            SamplerKind::Stratified => {
-                let stratum = permute(l, id.index, self.points, self.slot_seed(l, id, slot));
-                let [jitter, ..] = self.independent(l, id, slot);
-                self.jittered(l, stratum, jitter, self.points)
-            }
-            SamplerKind::Independent => self.independent(l, id, slot)[0],
-        }
+        l.vectorize(
+            #[inline(always)]
+            || match self.kind {
+                SamplerKind::Sobol | SamplerKind::Center => {
+                    let base = self.slot_seed(l, id, slot);
+                    let index = sobol::shuffled(l, id.index, base);
+                    l.uniform(sobol::scrambled(
+                        l,
+                        index,
+                        mix(l, base.plus(l.int(0x68bc_21eb))),
+                    ))
+                }
+                SamplerKind::Stratified => {
+                    let stratum = permute(l, id.index, self.points, self.slot_seed(l, id, slot));
+                    let [jitter, ..] = self.independent(l, id, slot);
+                    self.jittered(l, stratum, jitter, self.points)
+                }
+                SamplerKind::Independent => self.independent(l, id, slot)[0],
+            },
+        )
     }
 
     #[inline(always)]
