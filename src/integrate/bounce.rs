@@ -5,7 +5,7 @@ use super::model::{Model, Scatter};
 use super::pool::{IntField, Pool, RealField, Results, SpectralField, any, bit_where, flags, has};
 use super::surface::{Arrival, Surfaces, surfaces};
 use crate::material::fresnel;
-use crate::math::lanes::{Int, Lanes, Mask, Real};
+use crate::math::lanes::{Int, Lanes, Mask, Real, inlined};
 use crate::math::vec3::Vec3;
 use crate::sample::Slot;
 use crate::sample::mis::power_weight;
@@ -51,13 +51,16 @@ pub fn bounce<L: Lanes, const C: usize>(
     rungs: &mut Rungs,
 ) -> u32 {
     let active = l.mask_from_bits(active);
-    let vector = |pool: &Pool<L::Scalar, C>, field| {
-        Vec3::new(
-            pool.real(l, field, 0, at),
-            pool.real(l, field, 1, at),
-            pool.real(l, field, 2, at),
-        )
-    };
+    let vector = inlined(
+        #[inline(always)]
+        |pool: &Pool<L::Scalar, C>, field| {
+            Vec3::new(
+                pool.real(l, field, 0, at),
+                pool.real(l, field, 1, at),
+                pool.real(l, field, 2, at),
+            )
+        },
+    );
     let ray = LaneRay::<L>::new(
         vector(pool, RealField::Origin),
         vector(pool, RealField::Direction),
@@ -209,7 +212,10 @@ impl<L: Lanes, const C: usize> Step<L, C> {
             // Reflection stays on the side it came from.
             inward: !surface.front,
         };
-        let kind = |scatter: Scatter| going & surface.scatter.same(l.int(scatter as u32));
+        let kind = inlined(
+            #[inline(always)]
+            |scatter: Scatter| going & surface.scatter.same(l.int(scatter as u32)),
+        );
         if model.needs.diffuse {
             let diffuse = kind(Scatter::Diffuse);
             if any(diffuse) {
@@ -392,10 +398,13 @@ impl<L: Lanes, const C: usize> Step<L, C> {
     ) {
         let one = l.real(1.0);
         let terminated = has(l, self.flags, flags::TERMINATED);
-        let eta_of = |position: L::Real| {
-            let n = model.spectra.between(l, surface.spectrum, position);
-            l.select(surface.front, n, one / n)
-        };
+        let eta_of = inlined(
+            #[inline(always)]
+            |position: L::Real| {
+                let n = model.spectra.between(l, surface.spectrum, position);
+                l.select(surface.front, n, one / n)
+            },
+        );
         let hero_eta = eta_of(self.position[0]);
         let (transmitted, hero_reflectance) = fresnel::dielectric(l, cosine, hero_eta);
         let mut reflectance = [hero_reflectance; C];

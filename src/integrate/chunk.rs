@@ -154,7 +154,13 @@ fn start<L: Lanes, const C: usize>(
         (numbers[2][i], numbers[3][i]) = replicates.place(request.sample);
         numbers[4][i] = (first + i) as u32;
     }
-    let [x, y, replicate, index, slot] = numbers.map(|n| l.load_int(&n));
+    let [x, y, replicate, index, slot] = [
+        l.load_int(&numbers[0]),
+        l.load_int(&numbers[1]),
+        l.load_int(&numbers[2]),
+        l.load_int(&numbers[3]),
+        l.load_int(&numbers[4]),
+    ];
     let id = model.sequence.identity(l, x, y, replicate, index);
     let sample = model.sequence.camera(l, id, model.needs.lens);
     let (origin, direction) = model.camera.rays(l, x, y, &sample);
@@ -170,8 +176,10 @@ fn start<L: Lanes, const C: usize>(
     }
     let zero = l.real(0.0);
     pool.set_real(l, RealField::Pdf, 0, at, zero);
-    let positions =
-        std::array::from_fn(|j| spectrometer.wavelength::<L, C>(l, sample.wavelength, j).0);
+    let mut positions = [zero; C];
+    for (j, position) in positions.iter_mut().enumerate() {
+        *position = spectrometer.wavelength::<L, C>(l, sample.wavelength, j).0;
+    }
     pool.set_spectral(l, SpectralField::Position, at, positions);
     pool.set_spectral(l, SpectralField::Throughput, at, [l.real(1.0); C]);
     pool.set_spectral(l, SpectralField::Radiance, at, [zero; C]);

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::model::Model;
 use super::pool::any;
-use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
+use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
 use crate::shape::Tally;
 use crate::shape::lanes::implicit::StartSign;
 use crate::shape::lanes::{LaneRay, Span};
@@ -74,8 +74,14 @@ fn candidate<L: Lanes>(
     inward: L::Mask,
 ) -> Candidate<L> {
     let zero = l.real(0.0);
-    let ahead = |t: L::Real| t.gt(span.error);
-    let behind = |t: L::Real| t.lt(-span.error);
+    let ahead = inlined(
+        #[inline(always)]
+        |t: L::Real| t.gt(span.error),
+    );
+    let behind = inlined(
+        #[inline(always)]
+        |t: L::Real| t.lt(-span.error),
+    );
     if flat {
         let miss = span.miss | behind(span.near) | own;
         let hit = span.hit & ahead(span.near) & !own;

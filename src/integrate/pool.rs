@@ -203,7 +203,11 @@ impl<T: Copy + Default, const C: usize> Pool<T, C> {
         field: SpectralField,
         at: usize,
     ) -> [L::Real; C] {
-        std::array::from_fn(|j| l.load(&self.reals[self.spectral_at(field, j, at)..]))
+        let mut values = [l.real(0.0); C];
+        for (j, value) in values.iter_mut().enumerate() {
+            *value = l.load(&self.reals[self.spectral_at(field, j, at)..]);
+        }
+        values
     }
 
     /// Writes a packet of a spectral field.

@@ -186,6 +186,13 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     }
 }
 
+/// Gives a closure back. An attribute may stand on an argument but not on the right of `let`, and
+/// a closure over lanes must be inlined to be compiled for the instruction set of its caller.
+#[inline(always)]
+pub fn inlined<F>(f: F) -> F {
+    f
+}
+
 /// Single precision: f32 × 16.
 #[derive(Clone, Copy)]
 pub struct Single<S: Simd>(pub S);
