@@ -156,7 +156,7 @@ class Builder:
     def shapes(self, place, material, key, extra):
         """The Mitsuba shapes of a placed shape with the further properties `extra`."""
         bsdf = {"bsdf": self.bsdf(place, material)}
-        to_world = place.to_world
+        to_world = unmirrored(place.to_world)
         if place.kind == "plane":
             to_world = to_world @ np.diag([*plane_scale(to_world, self.view), 1, 1])
         if place.kind == "sphere" and not is_similarity(to_world):
@@ -208,6 +208,8 @@ class Builder:
         tiles = half / material["cell"]
         to_uv = np.diag([*tiles, 1.0])
         to_uv[:2, 2] = -tiles / 2
+        if np.linalg.det(place.to_world[:3, :3]) < 0:
+            to_uv[0] *= -1
         even, odd = (self.reflectance(form) for form in material["checkerboard"])
         return {"type": "checkerboard", "color0": even, "color1": odd, "to_uv": mi.ScalarTransform3f(to_uv)}
 
@@ -230,6 +232,14 @@ def canonical_parts(kind):
 def plane_scale(to_world, view):
     """Canonical half sizes (2) of the square that stands for a plane: 1000 camera distances."""
     return PLANE_EXTENT * view / np.linalg.norm(to_world[:3, :2], axis=0)
+
+
+def unmirrored(to_world):
+    """A placement of the same canonical shape without mirroring: all are symmetric in x, and Mitsuba
+    turns the geometric normals of mirrored cubes and rectangles around."""
+    if np.linalg.det(to_world[:3, :3]) < 0:
+        return to_world @ np.diag([-1, 1, 1, 1])
+    return to_world
 
 
 def is_similarity(matrix):
