@@ -1,0 +1,47 @@
+"""Runs the etalon binary and reads its pictures."""
+
+import subprocess
+import time
+from pathlib import Path
+
+import mitsuba as mi
+import numpy as np
+
+import spectra
+
+ROOT = Path(__file__).resolve().parent.parent
+BINARY = ROOT / "target" / "release" / "etalon"
+
+
+class EtalonError(Exception):
+    """The binary is missing or gave up."""
+
+
+def render(scene, output, *, panel=None, threads=2, binary=BINARY, **image):
+    """Renders to the file `output`; `image` are options that stand for keys of [image], such as
+    spp=64 or size=(64, 48). Returns wall-clock seconds of the whole process."""
+    command = [str(binary), "render", str(scene), "-o", str(output), "--threads", str(threads), "--quiet"]
+    if panel is not None:
+        command += ["--panel", panel]
+    for key, value in image.items():
+        if value is not None:
+            text = "x".join(map(str, value)) if key == "size" else str(value)
+            command += [f"--{key.replace('_', '-')}", text]
+    start = time.perf_counter()
+    try:
+        result = subprocess.run(command, capture_output=True, text=True, check=False)
+    except OSError as error:
+        raise EtalonError(f"{binary}: {error.strerror}; build it with cargo build --release") from error
+    seconds = time.perf_counter() - start
+    if result.returncode != 0:
+        raise EtalonError(f"{' '.join(command)}\n{result.stderr.strip()}")
+    return seconds
+
+
+def read_xyz(path):
+    """Linear XYZ (height×width×3, float64) of a picture with channels R, G, B."""
+    bitmap = mi.Bitmap(str(path))
+    names = [field.name for field in bitmap.struct_()]
+    values = np.array(bitmap, np.float64)
+    rgb = values[..., [names.index(channel) for channel in "RGB"]]
+    return rgb @ np.linalg.inv(spectra.XYZ_TO_RGB).T
