@@ -5,6 +5,7 @@ pub mod camera;
 pub mod film;
 pub mod integrate;
 pub mod light;
+pub mod material;
 pub mod math;
 pub mod sample;
 pub mod scene;

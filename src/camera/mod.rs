@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::math::lanes::{Lanes, Real, Scalar};
+use crate::math::lanes::{Lanes, Scalar};
 use crate::math::vec3::Vec3;
 use crate::sample::sequence::CameraSample;
 use crate::sample::warp::square_to_disk;

@@ -88,7 +88,8 @@ impl<T: Scalar> RectangleLight<T> {
             seen.corners = g2 + g3;
             seen.turns = (g0 + g1) - (l.real(1.0) - seen.corners);
             // Below 0.01 sr the difference has lost too much: 4 angles of 2⁻²⁵ turns, 2e-5.
-            seen.near = near & seen.turns.gt(l.real(0.01 / std::f64::consts::TAU));
+            let least: L::Real = l.real(0.01 / std::f64::consts::TAU);
+            seen.near = near & least.lt(seen.turns);
         }
         seen
     }
