@@ -18,8 +18,6 @@ import time
 import warnings
 from pathlib import Path
 
-import numpy as np
-
 import agreement
 import convergence
 import etalon
@@ -98,8 +96,9 @@ def speed(paths, arguments, folder):
     wavelengths = arguments.wavelengths or "as planned (`etalon info`)"
     print(f"{arguments.rounds} alternating rounds. Wavelengths a path: etalon {wavelengths}, Mitsuba 4.")
     print(f"Mitsuba {mitsuba_scene.mi.__version__} {arguments.variant}, Russian roulette at its own default depth.\n")
-    print("| scene | size | depth | samplers (etalon / Mitsuba) | etalon, 10⁶/s | Mitsuba, 10⁶/s | ratio min / median / max |")
-    print("|---|---|---|---|---|---|---|")
+    columns = ["scene", "size", "depth", "samplers (etalon / Mitsuba)", "etalon, 10⁶/s", "Mitsuba, 10⁶/s"]
+    columns.append("ratio min / median / max")
+    print("| " + " | ".join(columns) + " |\n|" + "---|" * len(columns))
     for path in paths:
         for samplers in SAMPLERS:
             try:
