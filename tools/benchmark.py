@@ -116,7 +116,7 @@ def parse_arguments():
     mode.add_argument("--convergence", action="store_true", help="error of the picture over paths per pixel")
     mode.add_argument("--agreement", action="store_true", help="means of the picture with their standard errors")
     parser.add_argument("--pixels", type=int, help="size of the picture (default: 65536, for the other two 4096)")
-    parser.add_argument("--spp", type=int, help="paths per pixel (default: 128; reference and agreement: 4096)")
+    parser.add_argument("--spp", type=int, help="paths per pixel (default: 256; reference and agreement: 4096)")
     parser.add_argument("--rounds", type=int, default=5, help="alternating rounds (default: %(default)s)")
     parser.add_argument("--replicates", type=int, default=8, help="pictures of a reference (default: %(default)s)")
     parser.add_argument("--wavelengths", type=int, choices=[4, 8], help="per path, for etalon")
@@ -125,7 +125,7 @@ def parse_arguments():
     arguments = parser.parse_args()
     is_speed = not (arguments.convergence or arguments.agreement)
     arguments.pixels = arguments.pixels or (65536 if is_speed else 4096)
-    arguments.spp = arguments.spp or (128 if is_speed else 4096)
+    arguments.spp = arguments.spp or (256 if is_speed else 4096)
     if not arguments.scenes:
         known = [etalon.ROOT / "scenes" / f"{name}.toml" for name in SCENES]
         arguments.scenes = [path for path in known if path.exists()]
