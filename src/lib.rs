@@ -7,6 +7,8 @@ pub mod integrate;
 pub mod light;
 pub mod material;
 pub mod math;
+pub mod plan;
+pub mod render;
 pub mod sample;
 pub mod scene;
 pub mod shape;

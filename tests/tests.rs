@@ -1,5 +1,6 @@
 //! The test suite, one binary.
 
+mod cli;
 mod film_files;
 mod oracle_primitives;
 mod scene_file;

@@ -7,6 +7,7 @@
 pub mod attribute_order;
 pub mod exr;
 pub mod names;
+pub mod pixels;
 pub mod png;
 pub mod provenance;
 pub mod spectral;

@@ -382,7 +382,12 @@ impl<L: Lanes, const C: usize> Step<L, C> {
         model: &Model<L::Scalar>,
         surface: &Surfaces<L>,
         glass: L::Mask,
-        (incoming, facing, cosine, mirrored): (Vec3<L::Real>, Vec3<L::Real>, L::Real, Vec3<L::Real>),
+        (incoming, facing, cosine, mirrored): (
+            Vec3<L::Real>,
+            Vec3<L::Real>,
+            L::Real,
+            Vec3<L::Real>,
+        ),
         next: &mut Scattered<L>,
     ) {
         let one = l.real(1.0);
@@ -462,4 +467,3 @@ impl<L: Lanes, const C: usize> Step<L, C> {
         going & (survives | !late)
     }
 }
-

@@ -98,7 +98,15 @@ pub fn render<L: Lanes, const C: usize>(
             pool.compact(l);
             while taken < requests.len() && pool.length + L::COUNT <= POOL {
                 let end = requests.len().min(taken + L::COUNT);
-                start(l, model, spectrometer, &requests[taken..end], taken, pool, results);
+                start(
+                    l,
+                    model,
+                    spectrometer,
+                    &requests[taken..end],
+                    taken,
+                    pool,
+                    results,
+                );
                 taken = end;
             }
             pool.all_alive::<L>();
@@ -139,12 +147,11 @@ fn start<L: Lanes, const C: usize>(
     results: &mut Results<L::Scalar, C>,
 ) {
     let mut numbers = [[0u32; PADDING]; 5];
-    let replicates = model.sequence.replicates();
+    let replicates = model.sequence.replicates;
     for (i, request) in requests.iter().enumerate() {
         numbers[0][i] = request.x;
         numbers[1][i] = request.y;
-        numbers[2][i] = request.sample % replicates;
-        numbers[3][i] = request.sample / replicates;
+        (numbers[2][i], numbers[3][i]) = replicates.place(request.sample);
         numbers[4][i] = (first + i) as u32;
     }
     let [x, y, replicate, index, slot] = numbers.map(|n| l.load_int(&n));
@@ -153,18 +160,18 @@ fn start<L: Lanes, const C: usize>(
     let (origin, direction) = model.camera.rays(l, x, y, &sample);
 
     let at = pool.length;
-    for (field, v) in [(RealField::Origin, origin), (RealField::Direction, direction)] {
+    for (field, v) in [
+        (RealField::Origin, origin),
+        (RealField::Direction, direction),
+    ] {
         pool.set_real(l, field, 0, at, v.x);
         pool.set_real(l, field, 1, at, v.y);
         pool.set_real(l, field, 2, at, v.z);
     }
     let zero = l.real(0.0);
     pool.set_real(l, RealField::Pdf, 0, at, zero);
-    let positions = std::array::from_fn(|j| {
-        spectrometer
-            .wavelength::<L, C>(l, sample.wavelength, j)
-            .0
-    });
+    let positions =
+        std::array::from_fn(|j| spectrometer.wavelength::<L, C>(l, sample.wavelength, j).0);
     pool.set_spectral(l, SpectralField::Position, at, positions);
     pool.set_spectral(l, SpectralField::Throughput, at, [l.real(1.0); C]);
     pool.set_spectral(l, SpectralField::Radiance, at, [zero; C]);

@@ -63,25 +63,30 @@ impl<T: crate::math::lanes::Scalar> Spectrometer<T> {
     }
 
     /// X, Y, Z of the samples in slots `at ..`: Σⱼ Lⱼ x̄(λⱼ)/(C pdf(λⱼ)) / ∫ȳ.
-    #[inline(always)]
+    #[inline(never)]
     pub fn tristimulus<L: Lanes<Scalar = T>, const C: usize>(
         &self,
         l: L,
         results: &Results<T, C>,
         at: usize,
     ) -> [L::Real; 3] {
-        let hero = l.load(&results.hero[at..]);
-        let mut sum = [l.real(0.0); 3];
-        for j in 0..C {
-            let (position, inverse_pdf) = self.wavelength::<L, C>(l, hero, j);
-            let radiance = l.load(&results.radiance[j * results.capacity + at..]);
-            let weighted = radiance * inverse_pdf * l.real(1.0 / C as f64);
-            for (sum, observer) in sum.iter_mut().zip(self.observer) {
-                let value = self.bank.mean(l, l.int(observer), position);
-                *sum = weighted.mul_add(value, *sum);
-            }
-        }
-        sum
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let hero = l.load(&results.hero[at..]);
+                let mut sum = [l.real(0.0); 3];
+                for j in 0..C {
+                    let (position, inverse_pdf) = self.wavelength::<L, C>(l, hero, j);
+                    let radiance = l.load(&results.radiance[j * results.capacity + at..]);
+                    let weighted = radiance * inverse_pdf * l.real(1.0 / C as f64);
+                    for (sum, observer) in sum.iter_mut().zip(self.observer) {
+                        let value = self.bank.mean(l, l.int(observer), position);
+                        *sum = weighted.mul_add(value, *sum);
+                    }
+                }
+                sum
+            },
+        )
     }
 
     /// Y of one path, in f64.

@@ -121,7 +121,7 @@ fn departure<L: Lanes>(l: L, leaving: &Leaving<L>, i: usize) -> Departure {
 }
 
 /// The closest hits of the active rays.
-#[inline(always)]
+#[inline(never)]
 pub fn nearest<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
@@ -130,69 +130,74 @@ pub fn nearest<L: Lanes>(
     active: L::Mask,
     rungs: &mut Rungs,
 ) -> Nearest<L> {
-    let infinite = l.real(f64::INFINITY);
-    let mut best = Nearest::<L> {
-        t: infinite,
-        object: l.int(NOTHING),
-    };
-    let mut best_error = l.real(0.0);
-    // Where the earliest crossing could be that no bound could settle.
-    let mut doubt = infinite;
-    for (k, shape) in model.shapes.iter().enumerate() {
-        let Some(kind) = shape.kind else { continue };
-        let index = l.int(k as u32);
-        let span = shape.span(l, ray);
-        let own = leaving.object.same(index);
-        let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
-        let closer = (c.t + c.error).lt(best.t - best_error);
-        let farther = (c.t - c.error).gt(best.t + best_error);
-        let take = c.hit & closer;
-        let tie = c.hit & !closer & !farther;
-        best.t = l.select(take, c.t, best.t);
-        best_error = l.select(take, c.error, best_error);
-        best.object = l.select_int(take, index, best.object);
-        doubt = l.select(c.undecided | tie, doubt.min(c.earliest), doubt);
-    }
-    rungs.rays += u64::from(active.bits().count_ones());
-    let unsure = active & doubt.le(best.t + best_error) & !doubt.same(infinite);
-    if any(unsure) {
-        let mut bits = unsure.bits();
-        rungs.undecided += u64::from(bits.count_ones());
-        while bits != 0 {
-            let i = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            let (t, object) = model
-                .resolver
-                .nearest(
-                    lane_vector(l, ray.origin, i),
-                    lane_vector(l, ray.direction, i),
-                    departure(l, leaving, i),
-                    &mut rungs.ladder,
-                )
-                .unwrap_or((f64::INFINITY, NOTHING));
-            best.t = l.with_lane(best.t, i, L::Scalar::from_f64(t));
-            best.object = l.with_int_lane(best.object, i, object);
-        }
-    }
-    for (object, implicit) in &model.implicits {
-        let index = l.int(*object);
-        let on = leaving.object.same(index);
-        let start = StartSign {
-            on,
-            inward: leaving.inward,
-        };
-        let (t, found) = implicit.first_change(l, ray, start, best.t, active);
-        best.t = l.select(found, t, best.t);
-        best.object = l.select_int(found, index, best.object);
-    }
-    best
+    l.vectorize(
+        #[inline(always)]
+        || {
+            let infinite = l.real(f64::INFINITY);
+            let mut best = Nearest::<L> {
+                t: infinite,
+                object: l.int(NOTHING),
+            };
+            let mut best_error = l.real(0.0);
+            // Where the earliest crossing could be that no bound could settle.
+            let mut doubt = infinite;
+            for (k, shape) in model.shapes.iter().enumerate() {
+                let Some(kind) = shape.kind else { continue };
+                let index = l.int(k as u32);
+                let span = shape.span(l, ray);
+                let own = leaving.object.same(index);
+                let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
+                let closer = (c.t + c.error).lt(best.t - best_error);
+                let farther = (c.t - c.error).gt(best.t + best_error);
+                let take = c.hit & closer;
+                let tie = c.hit & !closer & !farther;
+                best.t = l.select(take, c.t, best.t);
+                best_error = l.select(take, c.error, best_error);
+                best.object = l.select_int(take, index, best.object);
+                doubt = l.select(c.undecided | tie, doubt.min(c.earliest), doubt);
+            }
+            rungs.rays += u64::from(active.bits().count_ones());
+            let unsure = active & doubt.le(best.t + best_error) & !doubt.same(infinite);
+            if any(unsure) {
+                let mut bits = unsure.bits();
+                rungs.undecided += u64::from(bits.count_ones());
+                while bits != 0 {
+                    let i = bits.trailing_zeros() as usize;
+                    bits &= bits - 1;
+                    let (t, object) = model
+                        .resolver
+                        .nearest(
+                            lane_vector(l, ray.origin, i),
+                            lane_vector(l, ray.direction, i),
+                            departure(l, leaving, i),
+                            &mut rungs.ladder,
+                        )
+                        .unwrap_or((f64::INFINITY, NOTHING));
+                    best.t = l.with_lane(best.t, i, L::Scalar::from_f64(t));
+                    best.object = l.with_int_lane(best.object, i, object);
+                }
+            }
+            for (object, implicit) in &model.implicits {
+                let index = l.int(*object);
+                let on = leaving.object.same(index);
+                let start = StartSign {
+                    on,
+                    inward: leaving.inward,
+                };
+                let (t, found) = implicit.first_change(l, ray, start, best.t, active);
+                best.t = l.select(found, t, best.t);
+                best.object = l.select_int(found, index, best.object);
+            }
+            best
+        },
+    )
 }
 
 /// Which of the active rays meet anything before `limit`, except object `except`.
 ///
 /// The far end is a point on another surface, rounded; what is not *certainly* before it is taken
 /// to be that surface's own neighbourhood, not an occluder.
-#[inline(always)]
+#[inline(never)]
 pub fn occluded<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
@@ -203,50 +208,55 @@ pub fn occluded<L: Lanes>(
     active: L::Mask,
     rungs: &mut Rungs,
 ) -> L::Mask {
-    let mut blocked = l.mask(false);
-    let mut doubtful = l.mask(false);
-    for (k, shape) in model.shapes.iter().enumerate() {
-        let Some(kind) = shape.kind else { continue };
-        let index = l.int(k as u32);
-        let span = shape.span(l, ray);
-        let own = leaving.object.same(index);
-        let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
-        let counted = !except.same(index);
-        blocked = blocked | (c.hit & (c.t + c.error).lt(limit) & counted);
-        doubtful = doubtful | (c.undecided & c.earliest.lt(limit) & counted);
-    }
-    rungs.rays += u64::from(active.bits().count_ones());
-    let unsure = active & doubtful & !blocked;
-    if any(unsure) {
-        let mut bits = unsure.bits();
-        rungs.undecided += u64::from(bits.count_ones());
-        let mut answers = 0;
-        while bits != 0 {
-            let i = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            // The limit is a rounded distance: a few units in its last place are its own noise.
-            let end = l.lane(limit, i).to_f64() * (1.0 - 8.0 * L::Scalar::ROUNDOFF);
-            let hidden = model.resolver.occluded(
-                lane_vector(l, ray.origin, i),
-                lane_vector(l, ray.direction, i),
-                end,
-                departure(l, leaving, i),
-                l.int_lane(except, i),
-                &mut rungs.ladder,
-            );
-            answers |= u32::from(hidden) << i;
-        }
-        blocked = blocked | l.mask_from_bits(answers);
-    }
-    for (object, implicit) in &model.implicits {
-        let index = l.int(*object);
-        let start = StartSign {
-            on: leaving.object.same(index),
-            inward: leaving.inward,
-        };
-        let wanted = active & !blocked & !except.same(index);
-        let (_, found) = implicit.first_change(l, ray, start, limit, wanted);
-        blocked = blocked | (found & wanted);
-    }
-    blocked
+    l.vectorize(
+        #[inline(always)]
+        || {
+            let mut blocked = l.mask(false);
+            let mut doubtful = l.mask(false);
+            for (k, shape) in model.shapes.iter().enumerate() {
+                let Some(kind) = shape.kind else { continue };
+                let index = l.int(k as u32);
+                let span = shape.span(l, ray);
+                let own = leaving.object.same(index);
+                let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
+                let counted = !except.same(index);
+                blocked = blocked | (c.hit & (c.t + c.error).lt(limit) & counted);
+                doubtful = doubtful | (c.undecided & c.earliest.lt(limit) & counted);
+            }
+            rungs.rays += u64::from(active.bits().count_ones());
+            let unsure = active & doubtful & !blocked;
+            if any(unsure) {
+                let mut bits = unsure.bits();
+                rungs.undecided += u64::from(bits.count_ones());
+                let mut answers = 0;
+                while bits != 0 {
+                    let i = bits.trailing_zeros() as usize;
+                    bits &= bits - 1;
+                    // The limit is a rounded distance: a few units in its last place are its own noise.
+                    let end = l.lane(limit, i).to_f64() * (1.0 - 8.0 * L::Scalar::ROUNDOFF);
+                    let hidden = model.resolver.occluded(
+                        lane_vector(l, ray.origin, i),
+                        lane_vector(l, ray.direction, i),
+                        end,
+                        departure(l, leaving, i),
+                        l.int_lane(except, i),
+                        &mut rungs.ladder,
+                    );
+                    answers |= u32::from(hidden) << i;
+                }
+                blocked = blocked | l.mask_from_bits(answers);
+            }
+            for (object, implicit) in &model.implicits {
+                let index = l.int(*object);
+                let start = StartSign {
+                    on: leaving.object.same(index),
+                    inward: leaving.inward,
+                };
+                let wanted = active & !blocked & !except.same(index);
+                let (_, found) = implicit.first_change(l, ray, start, limit, wanted);
+                blocked = blocked | (found & wanted);
+            }
+            blocked
+        },
+    )
 }

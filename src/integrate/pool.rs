@@ -142,18 +142,21 @@ impl<T: Copy + Default, const C: usize> Pool<T, C> {
     /// The places of paths that have ended since the last compaction.
     pub fn ended(&self) -> impl Iterator<Item = usize> + '_ {
         let (lanes, length) = (self.lanes, self.length);
-        (0..length).step_by(lanes).enumerate().flat_map(move |(packet, at)| {
-            let here = (length - at).min(lanes);
-            let all = ((1u64 << here) - 1) as u32;
-            let mut bits = all & !self.masks[packet];
-            std::iter::from_fn(move || {
-                (bits != 0).then(|| {
-                    let i = bits.trailing_zeros() as usize;
-                    bits &= bits - 1;
-                    at + i
+        (0..length)
+            .step_by(lanes)
+            .enumerate()
+            .flat_map(move |(packet, at)| {
+                let here = (length - at).min(lanes);
+                let all = ((1u64 << here) - 1) as u32;
+                let mut bits = all & !self.masks[packet];
+                std::iter::from_fn(move || {
+                    (bits != 0).then(|| {
+                        let i = bits.trailing_zeros() as usize;
+                        bits &= bits - 1;
+                        at + i
+                    })
                 })
             })
-        })
     }
 
     #[inline(always)]
@@ -163,7 +166,13 @@ impl<T: Copy + Default, const C: usize> Pool<T, C> {
 
     /// Reads a packet of a plain field's component.
     #[inline(always)]
-    pub fn real<L: Lanes<Scalar = T>>(&self, l: L, field: RealField, i: usize, at: usize) -> L::Real {
+    pub fn real<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        field: RealField,
+        i: usize,
+        at: usize,
+    ) -> L::Real {
         l.load(&self.reals[self.real_at(field as usize + i, at)..])
     }
 

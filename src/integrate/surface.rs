@@ -43,7 +43,7 @@ pub struct Arrival<L: Lanes> {
 }
 
 /// Gathers what the loop needs to know about each hit, one distinct object at a time.
-#[inline(always)]
+#[inline(never)]
 pub fn surfaces<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
@@ -52,80 +52,87 @@ pub fn surfaces<L: Lanes>(
     arrival: &Arrival<L>,
     hit: L::Mask,
 ) -> Surfaces<L> {
-    let zero = l.real(0.0);
-    let one = l.real(1.0);
-    let nowhere = Vec3::new(zero, zero, one);
-    let mut out = Surfaces::<L> {
-        point: nowhere,
-        normal: nowhere,
-        front: l.mask(false),
-        scatter: l.int(Scatter::Black as u32),
-        spectrum: l.int(0),
-        extinction: l.int(0),
-        disperses: l.mask(false),
-        emits: l.mask(false),
-        emission: l.int(0),
-        emission_weight: one,
-    };
-    let mut pending = hit.bits();
-    while pending != 0 {
-        let k = l.int_lane(nearest.object, pending.trailing_zeros() as usize);
-        let here = hit & nearest.object.same(l.int(k));
-        pending &= !here.bits();
-        let shape = &model.shapes[k as usize];
-        let shading = &model.shading[k as usize];
-        let (local, normal) = if shape.kind.is_some() {
-            let o = shape.inverse.point(l, ray.origin);
-            let d = shape.inverse.vector(l, ray.direction);
-            shape.surface(l, o.along(d, nearest.t))
-        } else {
-            let p = shape
-                .inverse
-                .point(l, ray.origin.along(ray.direction, nearest.t));
-            (p, implicit_normal(l, model, k, p))
-        };
-        let point = shape.forward.point(l, local);
-        let normal = shape.inverse.transposed(l, normal).normalized(l);
-        let front = normal.dot(ray.direction).lt(zero);
-        out.point = Vec3::select(l, here, point, out.point);
-        out.normal = Vec3::select(l, here, normal, out.normal);
-        out.front = out.front | (here & front);
-        out.scatter = l.select_int(here, l.int(shading.scatter as u32), out.scatter);
-        let mut spectrum = l.int(shading.spectrum);
-        if let Some(checker) = &shading.checker {
-            let cell = |x: L::Real, frequency| (x * l.splat(frequency)).floor();
-            let [fx, fy, fz] = checker.frequency;
-            let half = (cell(local.x, fx) + cell(local.y, fy) + cell(local.z, fz)) * l.real(0.5);
-            let odd = !half.same(half.floor());
-            spectrum = l.select_int(odd, l.int(checker.odd), spectrum);
-        }
-        out.spectrum = l.select_int(here, spectrum, out.spectrum);
-        if model.needs.conductor {
-            out.extinction = l.select_int(here, l.int(shading.extinction), out.extinction);
-        }
-        if shading.disperses {
-            out.disperses = out.disperses | here;
-        }
-        if let Some(emission) = shading.emission {
-            let emits = here
-                & ((front & l.mask(shading.emits[0])) | (!front & l.mask(shading.emits[1])));
-            out.emits = out.emits | emits;
-            out.emission = l.select_int(emits, l.int(emission), out.emission);
-            if let Some(index) = shading.light
-                && any(emits & !arrival.specular)
-            {
-                let light = &model.lights[index as usize];
-                let chosen = l.splat(light.probability)
-                    * light
-                        .shape
-                        .pdf(l, ray.origin, ray.direction, nearest.t, normal);
-                let weight = power_weight(l, arrival.pdf, chosen);
-                let weighted = emits & !arrival.specular;
-                out.emission_weight = l.select(weighted, weight, out.emission_weight);
+    l.vectorize(
+        #[inline(always)]
+        || {
+            let zero = l.real(0.0);
+            let one = l.real(1.0);
+            let nowhere = Vec3::new(zero, zero, one);
+            let mut out = Surfaces::<L> {
+                point: nowhere,
+                normal: nowhere,
+                front: l.mask(false),
+                scatter: l.int(Scatter::Black as u32),
+                spectrum: l.int(0),
+                extinction: l.int(0),
+                disperses: l.mask(false),
+                emits: l.mask(false),
+                emission: l.int(0),
+                emission_weight: one,
+            };
+            let mut pending = hit.bits();
+            while pending != 0 {
+                let k = l.int_lane(nearest.object, pending.trailing_zeros() as usize);
+                let here = hit & nearest.object.same(l.int(k));
+                pending &= !here.bits();
+                let shape = &model.shapes[k as usize];
+                let shading = &model.shading[k as usize];
+                let (local, normal) = if shape.kind.is_some() {
+                    let o = shape.inverse.point(l, ray.origin);
+                    let d = shape.inverse.vector(l, ray.direction);
+                    shape.surface(l, o.along(d, nearest.t))
+                } else {
+                    let p = shape
+                        .inverse
+                        .point(l, ray.origin.along(ray.direction, nearest.t));
+                    (p, implicit_normal(l, model, k, p))
+                };
+                let point = shape.forward.point(l, local);
+                let normal = shape.inverse.transposed(l, normal).normalized(l);
+                let front = normal.dot(ray.direction).lt(zero);
+                out.point = Vec3::select(l, here, point, out.point);
+                out.normal = Vec3::select(l, here, normal, out.normal);
+                out.front = out.front | (here & front);
+                out.scatter = l.select_int(here, l.int(shading.scatter as u32), out.scatter);
+                let mut spectrum = l.int(shading.spectrum);
+                if let Some(checker) = &shading.checker {
+                    let cell = |x: L::Real, frequency| (x * l.splat(frequency)).floor();
+                    let [fx, fy, fz] = checker.frequency;
+                    let half =
+                        (cell(local.x, fx) + cell(local.y, fy) + cell(local.z, fz)) * l.real(0.5);
+                    let odd = !half.same(half.floor());
+                    spectrum = l.select_int(odd, l.int(checker.odd), spectrum);
+                }
+                out.spectrum = l.select_int(here, spectrum, out.spectrum);
+                if model.needs.conductor {
+                    out.extinction = l.select_int(here, l.int(shading.extinction), out.extinction);
+                }
+                if shading.disperses {
+                    out.disperses = out.disperses | here;
+                }
+                if let Some(emission) = shading.emission {
+                    let emits = here
+                        & ((front & l.mask(shading.emits[0]))
+                            | (!front & l.mask(shading.emits[1])));
+                    out.emits = out.emits | emits;
+                    out.emission = l.select_int(emits, l.int(emission), out.emission);
+                    if let Some(index) = shading.light
+                        && any(emits & !arrival.specular)
+                    {
+                        let light = &model.lights[index as usize];
+                        let chosen = l.splat(light.probability)
+                            * light
+                                .shape
+                                .pdf(l, ray.origin, ray.direction, nearest.t, normal);
+                        let weight = power_weight(l, arrival.pdf, chosen);
+                        let weighted = emits & !arrival.specular;
+                        out.emission_weight = l.select(weighted, weight, out.emission_weight);
+                    }
+                }
             }
-        }
-    }
-    out
+            out
+        },
+    )
 }
 
 /// Outward normal of an implicit surface: its gradient; where that vanishes, the direction from

@@ -65,40 +65,45 @@ impl<T: Scalar> CubeLight<T> {
     }
 
     /// A direction from p.
-    #[inline(always)]
+    #[inline(never)]
     pub fn sample<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         p: Vec3<L::Real>,
         [u, v]: [L::Real; 2],
     ) -> Towards<L> {
-        let (areas, total) = self.visible(l, p);
-        let zero = l.real(0.0);
-        let (one, two) = (l.real(1.0), l.real(2.0));
-        let target = u * total;
-        let mut below = zero;
-        let mut to = Vec3::new(zero, zero, one);
-        let mut normal = to;
-        for (face, area) in self.faces.iter().zip(areas) {
-            // The last face with area whose share begins at or below the target wins.
-            let here = target.ge(below) & area.gt(zero);
-            let share = (target - below) / area;
-            let x = two.mul_add(share.max(zero).min(one), -one);
-            let y = two.mul_add(v, -one);
-            let point = (vector(l, &face.centre) - p)
-                .along(vector(l, &face.half[0]), x)
-                .along(vector(l, &face.half[1]), y);
-            to = Vec3::select(l, here, point, to);
-            normal = Vec3::select(l, here, vector(l, &face.normal), normal);
-            below = below + area;
-        }
-        let mut towards = by_area(l, to, normal, one / total, [true, true]);
-        towards.valid = towards.valid & total.gt(zero);
-        towards
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let (areas, total) = self.visible(l, p);
+                let zero = l.real(0.0);
+                let (one, two) = (l.real(1.0), l.real(2.0));
+                let target = u * total;
+                let mut below = zero;
+                let mut to = Vec3::new(zero, zero, one);
+                let mut normal = to;
+                for (face, area) in self.faces.iter().zip(areas) {
+                    // The last face with area whose share begins at or below the target wins.
+                    let here = target.ge(below) & area.gt(zero);
+                    let share = (target - below) / area;
+                    let x = two.mul_add(share.max(zero).min(one), -one);
+                    let y = two.mul_add(v, -one);
+                    let point = (vector(l, &face.centre) - p)
+                        .along(vector(l, &face.half[0]), x)
+                        .along(vector(l, &face.half[1]), y);
+                    to = Vec3::select(l, here, point, to);
+                    normal = Vec3::select(l, here, vector(l, &face.normal), normal);
+                    below = below + area;
+                }
+                let mut towards = by_area(l, to, normal, one / total, [true, true]);
+                towards.valid = towards.valid & total.gt(zero);
+                towards
+            },
+        )
     }
 
     /// Density of [`Self::sample`].
-    #[inline(always)]
+    #[inline(never)]
     pub fn pdf<L: Lanes<Scalar = T>>(
         &self,
         l: L,
@@ -107,8 +112,12 @@ impl<T: Scalar> CubeLight<T> {
         distance: L::Real,
         normal: Vec3<L::Real>,
     ) -> L::Real {
-        let (_, total) = self.visible(l, p);
-        area_pdf(l, direction, distance, normal, l.real(1.0) / total)
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let (_, total) = self.visible(l, p);
+                area_pdf(l, direction, distance, normal, l.real(1.0) / total)
+            },
+        )
     }
 }
-

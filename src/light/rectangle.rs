@@ -95,40 +95,45 @@ impl<T: Scalar> RectangleLight<T> {
     }
 
     /// A direction from p.
-    #[inline(always)]
+    #[inline(never)]
     pub fn sample<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         p: Vec3<L::Real>,
         [u, v]: [L::Real; 2],
     ) -> Towards<L> {
-        let seen = self.seen(l, p);
-        let [ax, ay] = [vector(l, &self.axes[0]), vector(l, &self.axes[1])];
-        let two = l.real(2.0);
-        let one = l.real(1.0);
-        let mut x = two.mul_add(u, -one) * l.splat(self.half[0]);
-        let mut y = two.mul_add(v, -one) * l.splat(self.half[1]);
-        let to_centre = vector(l, &self.centre) - p;
-        if any(seen.near) {
-            let (sx, sy) = seen.point(l, u, v);
-            // Back to coordinates about the centre.
-            x = l.select(seen.near, sx - (seen.x[0] + seen.x[1]) * l.real(0.5), x);
-            y = l.select(seen.near, sy - (seen.y[0] + seen.y[1]) * l.real(0.5), y);
-        }
-        let to = to_centre.along(ax, x).along(ay, y);
-        let mut towards = by_area(
-            l,
-            to,
-            vector(l, &self.normal),
-            l.splat(self.inverse_area),
-            self.emits,
-        );
-        towards.pdf = l.select(seen.near, seen.pdf(l), towards.pdf);
-        towards
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let seen = self.seen(l, p);
+                let [ax, ay] = [vector(l, &self.axes[0]), vector(l, &self.axes[1])];
+                let two = l.real(2.0);
+                let one = l.real(1.0);
+                let mut x = two.mul_add(u, -one) * l.splat(self.half[0]);
+                let mut y = two.mul_add(v, -one) * l.splat(self.half[1]);
+                let to_centre = vector(l, &self.centre) - p;
+                if any(seen.near) {
+                    let (sx, sy) = seen.point(l, u, v);
+                    // Back to coordinates about the centre.
+                    x = l.select(seen.near, sx - (seen.x[0] + seen.x[1]) * l.real(0.5), x);
+                    y = l.select(seen.near, sy - (seen.y[0] + seen.y[1]) * l.real(0.5), y);
+                }
+                let to = to_centre.along(ax, x).along(ay, y);
+                let mut towards = by_area(
+                    l,
+                    to,
+                    vector(l, &self.normal),
+                    l.splat(self.inverse_area),
+                    self.emits,
+                );
+                towards.pdf = l.select(seen.near, seen.pdf(l), towards.pdf);
+                towards
+            },
+        )
     }
 
     /// Density of [`Self::sample`].
-    #[inline(always)]
+    #[inline(never)]
     pub fn pdf<L: Lanes<Scalar = T>>(
         &self,
         l: L,
@@ -137,9 +142,14 @@ impl<T: Scalar> RectangleLight<T> {
         distance: L::Real,
         normal: Vec3<L::Real>,
     ) -> L::Real {
-        let seen = self.seen(l, p);
-        let area = area_pdf(l, direction, distance, normal, l.splat(self.inverse_area));
-        l.select(seen.near, seen.pdf(l), area)
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let seen = self.seen(l, p);
+                let area = area_pdf(l, direction, distance, normal, l.splat(self.inverse_area));
+                l.select(seen.near, seen.pdf(l), area)
+            },
+        )
     }
 }
 

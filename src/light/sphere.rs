@@ -57,45 +57,50 @@ impl<T: Scalar> SphereLight<T> {
     }
 
     /// A direction from p.
-    #[inline(always)]
+    #[inline(never)]
     pub fn sample<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         p: Vec3<L::Real>,
         [u, v]: [L::Real; 2],
     ) -> Towards<L> {
-        let one = l.real(1.0);
-        let zero = l.real(0.0);
-        let cone = self.cone(l, p);
-        // By area, as seen from inside.
-        let w = uniform_sphere(l, u, v);
-        let to = cone.to.along(w, l.splat(self.radius));
-        let inside = by_area(l, to, w, l.splat(self.inverse_area), [false, self.emits[1]]);
-        // In the cone: 1 − cos θ uniform.
-        let height = u * cone.height;
-        let cosine = one - height;
-        let sine_squared = height * (one + cosine);
-        let (s, c) = sin_cos_turns(l, v);
-        let sine = sine_squared.sqrt();
-        let axis = cone.to.scale(one / cone.squared.sqrt());
-        let (a, b) = axis.frame(l);
-        let direction = axis.scale(cosine).along(a, sine * c).along(b, sine * s);
-        // Nearer crossing: d cos θ − √(r² − d² sin² θ).
-        let half = (-cone.squared)
-            .mul_add(sine_squared, l.splat(self.radius_squared))
-            .max(zero)
-            .sqrt();
-        let distance = cone.squared.sqrt().mul_add(cosine, -half);
-        Towards {
-            direction: Vec3::select(l, cone.outside, direction, inside.direction),
-            distance: l.select(cone.outside, distance, inside.distance),
-            pdf: l.select(cone.outside, cone_pdf(l, cone.height), inside.pdf),
-            valid: (cone.outside & l.mask(self.emits[0])) | (!cone.outside & inside.valid),
-        }
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let one = l.real(1.0);
+                let zero = l.real(0.0);
+                let cone = self.cone(l, p);
+                // By area, as seen from inside.
+                let w = uniform_sphere(l, u, v);
+                let to = cone.to.along(w, l.splat(self.radius));
+                let inside = by_area(l, to, w, l.splat(self.inverse_area), [false, self.emits[1]]);
+                // In the cone: 1 − cos θ uniform.
+                let height = u * cone.height;
+                let cosine = one - height;
+                let sine_squared = height * (one + cosine);
+                let (s, c) = sin_cos_turns(l, v);
+                let sine = sine_squared.sqrt();
+                let axis = cone.to.scale(one / cone.squared.sqrt());
+                let (a, b) = axis.frame(l);
+                let direction = axis.scale(cosine).along(a, sine * c).along(b, sine * s);
+                // Nearer crossing: d cos θ − √(r² − d² sin² θ).
+                let half = (-cone.squared)
+                    .mul_add(sine_squared, l.splat(self.radius_squared))
+                    .max(zero)
+                    .sqrt();
+                let distance = cone.squared.sqrt().mul_add(cosine, -half);
+                Towards {
+                    direction: Vec3::select(l, cone.outside, direction, inside.direction),
+                    distance: l.select(cone.outside, distance, inside.distance),
+                    pdf: l.select(cone.outside, cone_pdf(l, cone.height), inside.pdf),
+                    valid: (cone.outside & l.mask(self.emits[0])) | (!cone.outside & inside.valid),
+                }
+            },
+        )
     }
 
     /// Density of [`Self::sample`].
-    #[inline(always)]
+    #[inline(never)]
     pub fn pdf<L: Lanes<Scalar = T>>(
         &self,
         l: L,
@@ -104,9 +109,14 @@ impl<T: Scalar> SphereLight<T> {
         distance: L::Real,
         normal: Vec3<L::Real>,
     ) -> L::Real {
-        let cone = self.cone(l, p);
-        let area = area_pdf(l, direction, distance, normal, l.splat(self.inverse_area));
-        l.select(cone.outside, cone_pdf(l, cone.height), area)
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let cone = self.cone(l, p);
+                let area = area_pdf(l, direction, distance, normal, l.splat(self.inverse_area));
+                l.select(cone.outside, cone_pdf(l, cone.height), area)
+            },
+        )
     }
 }
 

@@ -9,7 +9,7 @@ use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x16, f64x8, i32x16, mask32x16, mask64x8, u32x16, u64x8};
+use fearless_simd::{Level, f32x16, f64x8, i32x16, mask32x16, mask64x8, u32x16, u64x8};
 
 /// The scalar stored in one lane, as arrays keep it.
 pub trait Scalar: Copy + Default + Debug + PartialOrd + Send + Sync + 'static {
@@ -132,6 +132,9 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     /// Bits of a uniform variate that the significand holds.
     const UNIFORM_BITS: u32;
 
+    /// Runs `f` compiled for this instruction set; wrapped in a function that is not inlined, the
+    /// boundary of a stage.
+    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R;
     /// The same value, rounded to this precision, in every lane.
     fn real(self, x: f64) -> Self::Real;
     /// The same scalar in every lane.
@@ -209,13 +212,38 @@ macro_rules! mask_impl {
 mask_impl!(mask32x16);
 mask_impl!(mask64x8);
 
+/// Whether an instruction set has a fused multiply-add; known at compile time once inlined.
+#[inline(always)]
+fn fuses(level: Level) -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return matches!(level, Level::Avx2(_) | Level::Avx512(_));
+    #[cfg(not(target_arch = "x86_64"))]
+    return !level.is_fallback();
+}
+
+/// The fused multiply-add in software: one copy, for it is long.
+#[inline(never)]
+fn fused_by_call_single<S: Simd>(x: f32x16<S>, a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
+    x.mul_add_precise(a, b)
+}
+
+/// The fused multiply-add in software: one copy, for it is long.
+#[inline(never)]
+fn fused_by_call_double<S: Simd>(x: f64x8<S>, a: f64x8<S>, b: f64x8<S>) -> f64x8<S> {
+    x.mul_add_precise(a, b)
+}
+
 macro_rules! real_impl {
-    ($real:ident, $mask:ident) => {
+    ($real:ident, $mask:ident, $fused_by_call:ident) => {
         impl<S: Simd> Real for $real<S> {
             type Mask = $mask<S>;
             #[inline(always)]
             fn mul_add(self, a: Self, b: Self) -> Self {
-                self.mul_add_precise(a, b)
+                if fuses(self.token().level()) {
+                    self.mul_add_precise(a, b)
+                } else {
+                    $fused_by_call(self, a, b)
+                }
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
@@ -269,8 +297,8 @@ macro_rules! real_impl {
     };
 }
 
-real_impl!(f32x16, mask32x16);
-real_impl!(f64x8, mask64x8);
+real_impl!(f32x16, mask32x16, fused_by_call_single);
+real_impl!(f64x8, mask64x8, fused_by_call_double);
 
 impl<S: Simd> Int for u32x16<S> {
     type Mask = mask32x16<S>;
@@ -350,6 +378,10 @@ impl<S: Simd> Lanes for Single<S> {
     const COUNT: usize = 16;
     const UNIFORM_BITS: u32 = 24;
 
+    #[inline(always)]
+    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
+        self.0.vectorize(f)
+    }
     #[inline(always)]
     fn real(self, x: f64) -> Self::Real {
         f32x16::splat(self.0, x as f32)
@@ -457,6 +489,10 @@ impl<S: Simd> Lanes for Double<S> {
     const COUNT: usize = 8;
     const UNIFORM_BITS: u32 = 32;
 
+    #[inline(always)]
+    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
+        self.0.vectorize(f)
+    }
     #[inline(always)]
     fn real(self, x: f64) -> Self::Real {
         f64x8::splat(self.0, x)

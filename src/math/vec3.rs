@@ -159,10 +159,8 @@ impl<T: super::lanes::Scalar> Rows<T> {
     #[inline(always)]
     pub fn row_dot<L: Lanes<Scalar = T>>(&self, l: L, i: usize, v: Vec3<L::Real>) -> L::Real {
         let r = &self.rows[i];
-        l.splat(r[0]).mul_add(
-            v.x,
-            l.splat(r[1]).mul_add(v.y, l.splat(r[2]) * v.z),
-        )
+        l.splat(r[0])
+            .mul_add(v.x, l.splat(r[1]).mul_add(v.y, l.splat(r[2]) * v.z))
     }
 
     /// Row `i` of the image of a point.

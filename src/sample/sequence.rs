@@ -11,14 +11,95 @@ use crate::scene::SamplerKind;
 pub struct Sequence {
     kind: SamplerKind,
     keys: Keys,
-    /// Points of one replicate.
+    /// How samples are shared out among independent scrambles.
+    pub replicates: Replicates,
+    /// Most points of one replicate.
     points: u32,
-    /// Independent scrambles a pixel.
-    replicates: u32,
     /// Significant bits of an index within a replicate.
     bits: u32,
     /// Strata across and down, for `stratified`.
     strata: [u32; 2],
+}
+
+/// How the samples of a pixel are shared out among its independent scrambles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Replicates {
+    /// This many, in turn.
+    Fixed(u32),
+    /// Two, then four, then eight as samples come: sample i belongs to the same replicate however
+    /// many follow, so that stopping early changes no sample.
+    Growing,
+}
+
+/// Samples at which the number of growing replicates begins to double: from there the new ones
+/// alone are filled until they have caught up.
+const GROWTH: [u32; 2] = [256, 4096];
+
+impl Replicates {
+    /// Replicate of sample `i` and the sample's index in it.
+    #[inline]
+    pub fn place(self, i: u32) -> (u32, u32) {
+        match self {
+            Self::Fixed(count) => (i % count, i / count),
+            Self::Growing => {
+                let mut count = 2;
+                for start in GROWTH {
+                    if i < start {
+                        break;
+                    }
+                    if i < 2 * start {
+                        let new = i - start;
+                        return (count + new % count, new / count);
+                    }
+                    count *= 2;
+                }
+                (i % count, i / count)
+            }
+        }
+    }
+
+    /// Number of replicates that `samples` samples reach.
+    pub fn count(self, samples: u32) -> u32 {
+        match self {
+            Self::Fixed(count) => count.min(samples),
+            Self::Growing => {
+                let mut count = 2;
+                for start in GROWTH {
+                    if samples > start {
+                        count = (2 * count).min(count + (samples - start));
+                    }
+                }
+                count.min(samples)
+            }
+        }
+    }
+
+    /// Number of samples among the first `samples` that belong to `replicate`.
+    pub fn samples_of(self, replicate: u32, samples: u32) -> u32 {
+        match self {
+            Self::Fixed(count) => samples / count + u32::from(replicate < samples % count),
+            Self::Growing => {
+                let (mut count, mut done) = (2, 0);
+                let mut own = 0;
+                for start in GROWTH {
+                    let in_turn = samples.min(start).saturating_sub(done);
+                    own += Self::share(replicate, 0, count, in_turn);
+                    let catching_up = samples.min(2 * start).saturating_sub(start);
+                    own += Self::share(replicate, count, count, catching_up);
+                    (count, done) = (2 * count, 2 * start);
+                }
+                own + Self::share(replicate, 0, count, samples.saturating_sub(done))
+            }
+        }
+    }
+
+    /// What `replicate` gets of `samples` dealt in turn to `count` replicates from `first` on.
+    fn share(replicate: u32, first: u32, count: u32, samples: u32) -> u32 {
+        if replicate < first || replicate >= first + count {
+            return 0;
+        }
+        samples / count + u32::from(replicate - first < samples % count)
+    }
 }
 
 /// What identifies one sample in lanes: which scramble, and which of its points.
@@ -56,26 +137,23 @@ fn strata(count: u32) -> [u32; 2] {
 }
 
 impl Sequence {
-    /// A sampler for `spp` samples a pixel in `replicates` independent scrambles.
-    pub fn new(kind: SamplerKind, seed: u64, spp: u32, replicates: u32) -> Self {
-        let points = spp.div_ceil(replicates).max(1);
+    /// A sampler for at most `spp` samples a pixel.
+    pub fn new(kind: SamplerKind, seed: u64, spp: u32, replicates: Replicates) -> Self {
+        let points = match replicates {
+            Replicates::Fixed(count) => spp.div_ceil(count).max(1),
+            Replicates::Growing => spp.max(1),
+        };
         Self {
             kind,
             keys: Keys::new(seed),
-            points,
             replicates,
+            points,
             bits: 32 - (points - 1).leading_zeros(),
             strata: strata(points),
         }
     }
 
-    /// Independent scrambles a pixel.
-    pub fn replicates(&self) -> u32 {
-        self.replicates
-    }
-
-    /// Identity of samples of pixels; sample i belongs to replicate i mod K, so that every prefix
-    /// of the samples shares them out evenly.
+    /// Identity of samples of pixels.
     #[inline(always)]
     pub fn identity<L: Lanes>(
         &self,
@@ -92,110 +170,131 @@ impl Sequence {
     }
 
     /// The camera's numbers, stratified together.
-    #[inline(always)]
+    #[inline(never)]
     pub fn camera<L: Lanes>(&self, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
-        let seed = |slot: Slot, component: u32| {
-            mix(l, id.key.plus(l.int(0x9e37_79b9u32.wrapping_mul(2 * slot as u32 + component + 1))))
-        };
-        let zero = l.real(0.0);
-        match self.kind {
-            SamplerKind::Sobol | SamplerKind::Center => {
-                let coordinate = |dimension: usize, slot: Slot, component: u32| {
-                    let digits = sobol::digits(l, dimension, id.index, self.bits);
-                    l.uniform(sobol::scrambled(l, digits, seed(slot, component)))
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let seed = |slot: Slot, component: u32| {
+                    mix(
+                        l,
+                        id.key.plus(
+                            l.int(0x9e37_79b9u32.wrapping_mul(2 * slot as u32 + component + 1)),
+                        ),
+                    )
                 };
-                let pixel = if self.kind == SamplerKind::Center {
-                    [l.real(0.5); 2]
-                } else {
-                    [coordinate(0, Slot::Pixel, 0), coordinate(1, Slot::Pixel, 1)]
-                };
-                CameraSample {
-                    pixel,
-                    wavelength: coordinate(2, Slot::Wavelength, 0),
-                    lens: if lens {
-                        [coordinate(3, Slot::Lens, 0), coordinate(4, Slot::Lens, 1)]
-                    } else {
-                        [zero; 2]
-                    },
+                let zero = l.real(0.0);
+                match self.kind {
+                    SamplerKind::Sobol | SamplerKind::Center => {
+                        let coordinate = |dimension: usize, slot: Slot, component: u32| {
+                            let digits = sobol::digits(l, dimension, id.index, self.bits);
+                            l.uniform(sobol::scrambled(l, digits, seed(slot, component)))
+                        };
+                        let pixel = if self.kind == SamplerKind::Center {
+                            [l.real(0.5); 2]
+                        } else {
+                            [coordinate(0, Slot::Pixel, 0), coordinate(1, Slot::Pixel, 1)]
+                        };
+                        CameraSample {
+                            pixel,
+                            wavelength: coordinate(2, Slot::Wavelength, 0),
+                            lens: if lens {
+                                [coordinate(3, Slot::Lens, 0), coordinate(4, Slot::Lens, 1)]
+                            } else {
+                                [zero; 2]
+                            },
+                        }
+                    }
+                    SamplerKind::Independent | SamplerKind::Stratified => {
+                        let depth = l.int(0);
+                        let wavelength = if self.kind == SamplerKind::Stratified {
+                            let slot = Slot::Wavelength.at(l, depth);
+                            let stratum =
+                                permute(l, id.index, self.points, self.slot_seed(l, id, slot));
+                            let [jitter, ..] = self.independent(l, id, slot);
+                            self.jittered(l, stratum, jitter, self.points)
+                        } else {
+                            self.independent(l, id, Slot::Wavelength.at(l, depth))[0]
+                        };
+                        CameraSample {
+                            pixel: self.pair(l, id, Slot::Pixel.at(l, depth)),
+                            wavelength,
+                            lens: if lens {
+                                self.pair(l, id, Slot::Lens.at(l, depth))
+                            } else {
+                                [zero; 2]
+                            },
+                        }
+                    }
                 }
-            }
-            SamplerKind::Independent | SamplerKind::Stratified => {
-                let depth = l.int(0);
-                let wavelength = if self.kind == SamplerKind::Stratified {
-                    let slot = Slot::Wavelength.at(l, depth);
-                    let stratum = permute(l, id.index, self.points, self.slot_seed(l, id, slot));
-                    let [jitter, ..] = self.independent(l, id, slot);
-                    self.jittered(l, stratum, jitter, self.points)
-                } else {
-                    self.independent(l, id, Slot::Wavelength.at(l, depth))[0]
-                };
-                CameraSample {
-                    pixel: self.pair(l, id, Slot::Pixel.at(l, depth)),
-                    wavelength,
-                    lens: if lens {
-                        self.pair(l, id, Slot::Lens.at(l, depth))
-                    } else {
-                        [zero; 2]
-                    },
-                }
-            }
-        }
+            },
+        )
     }
 
     /// Two numbers of a padded slot.
-    #[inline(always)]
+    #[inline(never)]
     pub fn pair<L: Lanes>(&self, l: L, id: Identity<L>, slot: L::Int) -> [L::Real; 2] {
-        match self.kind {
-            SamplerKind::Sobol | SamplerKind::Center => {
-                let base = self.slot_seed(l, id, slot);
-                let index = sobol::shuffled(l, id.index, base);
-                let first = sobol::scrambled(l, index, mix(l, base.plus(l.int(0x68bc_21eb))));
-                let digits = sobol::digits(l, 1, index, 32);
-                let second = sobol::scrambled(l, digits, mix(l, base.plus(l.int(0x02e5_be93))));
-                [l.uniform(first), l.uniform(second)]
-            }
-            SamplerKind::Stratified => {
-                let [across, down] = self.strata;
-                let stratum = permute(
-                    l,
-                    id.index,
-                    across * down,
-                    self.slot_seed(l, id, slot),
-                );
-                let [u, v, ..] = self.independent(l, id, slot);
-                let position = l.to_real(stratum);
-                // Exact for the at most 2²⁴ strata: the quotient is at least ½/across away from
-                // the integer that would be rounded to.
-                let row = ((position + l.real(0.5)) / l.real(across.into())).floor();
-                let column = (-row).mul_add(l.real(across.into()), position);
-                [
-                    self.below_one(l, (column + u) / l.real(across.into())),
-                    self.below_one(l, (row + v) / l.real(down.into())),
-                ]
-            }
-            SamplerKind::Independent => {
-                let [u, v, ..] = self.independent(l, id, slot);
-                [u, v]
-            }
-        }
+        l.vectorize(
+            #[inline(always)]
+            || {
+                match self.kind {
+                    SamplerKind::Sobol | SamplerKind::Center => {
+                        let base = self.slot_seed(l, id, slot);
+                        let index = sobol::shuffled(l, id.index, base);
+                        let first =
+                            sobol::scrambled(l, index, mix(l, base.plus(l.int(0x68bc_21eb))));
+                        let digits = sobol::digits(l, 1, index, 32);
+                        let second =
+                            sobol::scrambled(l, digits, mix(l, base.plus(l.int(0x02e5_be93))));
+                        [l.uniform(first), l.uniform(second)]
+                    }
+                    SamplerKind::Stratified => {
+                        let [across, down] = self.strata;
+                        let stratum =
+                            permute(l, id.index, across * down, self.slot_seed(l, id, slot));
+                        let [u, v, ..] = self.independent(l, id, slot);
+                        let position = l.to_real(stratum);
+                        // Exact for the at most 2²⁴ strata: the quotient is at least ½/across away from
+                        // the integer that would be rounded to.
+                        let row = ((position + l.real(0.5)) / l.real(across.into())).floor();
+                        let column = (-row).mul_add(l.real(across.into()), position);
+                        [
+                            self.below_one(l, (column + u) / l.real(across.into())),
+                            self.below_one(l, (row + v) / l.real(down.into())),
+                        ]
+                    }
+                    SamplerKind::Independent => {
+                        let [u, v, ..] = self.independent(l, id, slot);
+                        [u, v]
+                    }
+                }
+            },
+        )
     }
 
     /// One number of a padded slot.
-    #[inline(always)]
+    #[inline(never)]
     pub fn single<L: Lanes>(&self, l: L, id: Identity<L>, slot: L::Int) -> L::Real {
-        match self.kind {
-            SamplerKind::Sobol | SamplerKind::Center => {
-                let base = self.slot_seed(l, id, slot);
-                let index = sobol::shuffled(l, id.index, base);
-                l.uniform(sobol::scrambled(l, index, mix(l, base.plus(l.int(0x68bc_21eb)))))
-            }
-            SamplerKind::Stratified => {
-                let stratum = permute(l, id.index, self.points, self.slot_seed(l, id, slot));
-                let [jitter, ..] = self.independent(l, id, slot);
-                self.jittered(l, stratum, jitter, self.points)
-            }
-            SamplerKind::Independent => self.independent(l, id, slot)[0],
-        }
+        l.vectorize(
+            #[inline(always)]
+            || match self.kind {
+                SamplerKind::Sobol | SamplerKind::Center => {
+                    let base = self.slot_seed(l, id, slot);
+                    let index = sobol::shuffled(l, id.index, base);
+                    l.uniform(sobol::scrambled(
+                        l,
+                        index,
+                        mix(l, base.plus(l.int(0x68bc_21eb))),
+                    ))
+                }
+                SamplerKind::Stratified => {
+                    let stratum = permute(l, id.index, self.points, self.slot_seed(l, id, slot));
+                    let [jitter, ..] = self.independent(l, id, slot);
+                    self.jittered(l, stratum, jitter, self.points)
+                }
+                SamplerKind::Independent => self.independent(l, id, slot)[0],
+            },
+        )
     }
 
     #[inline(always)]

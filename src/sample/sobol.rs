@@ -50,9 +50,8 @@ const fn columns(s: usize, a: u32, m: [u32; 3]) -> [u32; 32] {
 /// The bits of each lane in reverse order.
 #[inline(always)]
 pub fn reverse_bits<L: Lanes>(l: L, x: L::Int) -> L::Int {
-    let swap = |x: L::Int, by: u32, mask: u32| {
-        (x.right(by) & l.int(mask)) | (x & l.int(mask)).left(by)
-    };
+    let swap =
+        |x: L::Int, by: u32, mask: u32| (x.right(by) & l.int(mask)) | (x & l.int(mask)).left(by);
     let x = swap(x, 1, 0x5555_5555);
     let x = swap(x, 2, 0x3333_3333);
     let x = swap(x, 4, 0x0f0f_0f0f);

@@ -11,6 +11,7 @@
 pub mod cube;
 pub mod cylinder;
 pub mod disk;
+pub mod implicit;
 pub mod ladder;
 pub mod lanes;
 pub mod line;
@@ -19,12 +20,14 @@ pub mod placed;
 pub mod plane;
 pub mod question;
 pub mod rectangle;
+pub mod resolve;
 pub mod sphere;
 mod surd;
-pub mod resolve;
 mod value;
 
 use glam::DVec3;
+
+use crate::scene::Shape;
 
 use crate::math::number::Number;
 use line::{LocalRay, Span};
@@ -50,6 +53,19 @@ pub enum ShapeKind {
 }
 
 impl ShapeKind {
+    /// The certified shape of a description; `None` for implicit surfaces.
+    pub fn of(shape: &Shape) -> Option<Self> {
+        Some(match shape {
+            Shape::Sphere => Self::Sphere,
+            Shape::Cube => Self::Cube,
+            Shape::Cylinder => Self::Cylinder,
+            Shape::Disk => Self::Disk,
+            Shape::Rectangle => Self::Rectangle,
+            Shape::Plane => Self::Plane,
+            Shape::Implicit(_) => return None,
+        })
+    }
+
     /// Whether the shape is a piece of the plane z = 0, with +z as its front.
     pub fn is_flat(self) -> bool {
         matches!(self, Self::Disk | Self::Rectangle | Self::Plane)

@@ -9,7 +9,7 @@ use super::value::{self, Values};
 use super::{Crossings, Hit, Ray, Rung, ShapeKind, Start, Tally};
 use crate::math::affine::Affine;
 use crate::math::exact::Exact;
-use crate::math::number::{Bounded, Number};
+use crate::math::number::{Bounded, Number, dot};
 
 /// The matrix maps space onto a plane or less (or has entries that are not finite).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -76,6 +76,19 @@ impl Placed {
             near: self.hit(&span.near, &ray, rung)?,
             far: self.hit(&span.far, &ray, rung)?,
         })
+    }
+
+    /// World → canonical coordinates, every entry computed in double-double and rounded once.
+    pub fn inverse(&self) -> Affine {
+        let frame = &self.ladder.double_double;
+        let rows = frame.adjugate.each_ref().map(|row| {
+            let entry = |j: usize| row[j].divided_by(&frame.scale).to_f64();
+            let shift = dot(row, &frame.translation)
+                .negated()
+                .divided_by(&frame.scale);
+            [entry(0), entry(1), entry(2), shift.to_f64()]
+        });
+        Affine { rows }
     }
 
     /// The map between world and object, on each rung.

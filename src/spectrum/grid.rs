@@ -52,23 +52,13 @@ impl<T: Scalar> SpectrumBank<T> {
 
     /// The mean of the cell at a grid position (cells above 360 nm).
     #[inline(always)]
-    pub fn mean<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        start: L::Int,
-        position: L::Real,
-    ) -> L::Real {
+    pub fn mean<L: Lanes<Scalar = T>>(&self, l: L, start: L::Int, position: L::Real) -> L::Real {
         l.gather(&self.values, start.plus(l.truncate(position)))
     }
 
     /// The value between nodes at a grid position.
     #[inline(always)]
-    pub fn between<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        start: L::Int,
-        position: L::Real,
-    ) -> L::Real {
+    pub fn between<L: Lanes<Scalar = T>>(&self, l: L, start: L::Int, position: L::Real) -> L::Real {
         let cell = l.truncate(position);
         let index = start.plus(cell);
         let a = l.gather(&self.values, index);

@@ -6,8 +6,8 @@
 
 pub mod blackbody;
 pub mod cells;
-pub mod grid;
 pub mod glass;
+pub mod grid;
 pub mod illuminant;
 pub mod ior;
 pub mod metal;

@@ -22,12 +22,8 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     let earliest_entry = (x.near - x.error)
         .max(y.near - y.error)
         .max(z.near - z.error);
-    let earliest_exit = (x.far - x.error)
-        .min(y.far - y.error)
-        .min(z.far - z.error);
-    let latest_exit = (x.far + x.error)
-        .min(y.far + y.error)
-        .min(z.far + z.error);
+    let earliest_exit = (x.far - x.error).min(y.far - y.error).min(z.far - z.error);
+    let latest_exit = (x.far + x.error).min(y.far + y.error).min(z.far + z.error);
     let lost = x.lost | y.lost | z.lost;
     let outside = x.outside | y.outside | z.outside;
     let error = (latest_entry - near)

@@ -29,10 +29,8 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     );
     let root = c.max(l.real(0.0)).sqrt();
     let half = root * inverse_length;
-    let mut side_error = (c_error / root + e * l.real(4.0)).mul_add(
-        inverse_length,
-        (foot_t.abs() + half) * l.real(8.0 * u),
-    );
+    let mut side_error = (c_error / root + e * l.real(4.0))
+        .mul_add(inverse_length, (foot_t.abs() + half) * l.real(8.0 * u));
     let mut side_near = foot_t - half;
     let mut side_far = foot_t + half;
     let mut side_hit = c.gt(c_error);
@@ -40,8 +38,7 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     // Along the axis the relative error of the direction across it is unbounded.
     let parallel = !across.sqrt().gt(dd * l.real(8.0));
     if parallel.any() {
-        let drift = (across.sqrt() + dd * l.real(2.0))
-            .mul_add(reach(l, o, d), e0 * l.real(2.0))
+        let drift = (across.sqrt() + dd * l.real(2.0)).mul_add(reach(l, o, d), e0 * l.real(2.0))
             * l.real(1.0 + 1e-6);
         let radius = o.x.mul_add(o.x, o.y * o.y).sqrt();
         let far = l.real(1e30);
@@ -69,9 +66,7 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
         far,
         error,
         hit: side_hit & latest_entry.lt(earliest_exit) & !caps.lost & !caps.outside,
-        miss: side_miss
-            | caps.outside
-            | (side_hit & earliest_entry.gt(latest_exit) & !caps.lost),
+        miss: side_miss | caps.outside | (side_hit & earliest_entry.gt(latest_exit) & !caps.lost),
     }
 }
 

@@ -6,12 +6,7 @@ use crate::math::lanes::{Lanes, Real, Scalar};
 /// The part of z = 0 that a flat shape covers.
 pub trait Outline {
     /// Whether (x, y), each within `error`, is certainly inside and certainly outside.
-    fn contains<L: Lanes>(
-        l: L,
-        x: L::Real,
-        y: L::Real,
-        error: [L::Real; 2],
-    ) -> (L::Mask, L::Mask);
+    fn contains<L: Lanes>(l: L, x: L::Real, y: L::Real, error: [L::Real; 2]) -> (L::Mask, L::Mask);
 }
 
 /// |x| ≤ 1, |y| ≤ 1.
@@ -75,11 +70,7 @@ impl Outline for Plane {
 /// t = −o_z/d_z within (E + |t| D)/|d_z|, doubled for the higher orders while D ≤ |d_z|/4, and
 /// (x, y) within E + |t| D + |d| δt.
 #[inline(always)]
-pub fn span<L: Lanes, O: Outline>(
-    l: L,
-    shape: &LaneShape<L::Scalar>,
-    ray: &LaneRay<L>,
-) -> Span<L> {
+pub fn span<L: Lanes, O: Outline>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
     let u = <L::Scalar as Scalar>::ROUNDOFF;
     let inverse = &shape.inverse;
     let oz = inverse.row_point(l, 2, ray.origin);
@@ -95,7 +86,9 @@ pub fn span<L: Lanes, O: Outline>(
     let x = x_slope.mul_add(t, inverse.row_point(l, 0, ray.origin));
     let y = y_slope.mul_add(t, inverse.row_point(l, 1, ray.origin));
     let bound = |slope: L::Real, value: L::Real| {
-        slope.abs().mul_add(error, e.mul_add(l.real(2.0), value.abs() * l.real(4.0 * u)))
+        slope
+            .abs()
+            .mul_add(error, e.mul_add(l.real(2.0), value.abs() * l.real(4.0 * u)))
     };
     let (inside, outside) = O::contains(l, x, y, [bound(x_slope, x), bound(y_slope, y)]);
     Span {

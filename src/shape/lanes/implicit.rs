@@ -34,12 +34,7 @@ pub struct StartSign<L: Lanes> {
 
 impl<T: Scalar> LaneImplicit<T> {
     /// Rounds a placement: clip box in object coordinates, world → object map.
-    pub fn new(
-        surface: ImplicitSurface,
-        inside: [DVec3; 2],
-        steps: u32,
-        inverse: &Affine,
-    ) -> Self {
+    pub fn new(surface: ImplicitSurface, inside: [DVec3; 2], steps: u32, inverse: &Affine) -> Self {
         let centre = (inside[0] + inside[1]) / 2.0;
         let half = (inside[1] - inside[0]) / 2.0;
         Self {
@@ -63,8 +58,7 @@ impl<T: Scalar> LaneImplicit<T> {
             }
             ImplicitSurface::Mitchell => {
                 let w = yy + zz;
-                (xx * xx + w * w) * l.real(4.0) + xx * w * l.real(17.0)
-                    - (xx + w) * l.real(20.0)
+                (xx * xx + w * w) * l.real(4.0) + xx * w * l.real(17.0) - (xx + w) * l.real(20.0)
                     + l.real(17.0)
             }
         }
@@ -98,7 +92,7 @@ impl<T: Scalar> LaneImplicit<T> {
     }
 
     /// The first sign change along each ray before `limit`; where the mask is false, none.
-    #[inline(always)]
+    #[inline(never)]
     pub fn first_change<L: Lanes<Scalar = T>>(
         &self,
         l: L,
@@ -107,55 +101,61 @@ impl<T: Scalar> LaneImplicit<T> {
         limit: L::Real,
         active: L::Mask,
     ) -> (L::Real, L::Mask) {
-        let o = self.inverse.point(l, ray.origin);
-        let d = self.inverse.vector(l, ray.direction);
-        let zero = l.real(0.0);
-        let (mut near, mut far) = (zero, limit);
-        for (o, d, c, h) in [
-            (o.x, d.x, self.centre[0], self.half[0]),
-            (o.y, d.y, self.centre[1], self.half[1]),
-            (o.z, d.z, self.centre[2], self.half[2]),
-        ] {
-            let inverse = l.real(1.0) / d;
-            let (c, h) = (l.splat(c), l.splat(h));
-            let (t1, t2) = ((c - h - o) * inverse, (c + h - o) * inverse);
-            near = near.max(t1.min(t2));
-            far = far.min(t1.max(t2));
-        }
-        let clipped = active & near.lt(far);
-        let mut found = l.mask(false);
-        let (mut low, mut high) = (near, near);
-        if !clipped.any() {
-            return (near, found);
-        }
-        let step = (far - near) * l.real(1.0 / f64::from(self.steps));
-        let mut negative = self.field(l, o.along(d, near)).lt(zero);
-        // On the surface the field's sign at the start is rounding noise, its sign after it known.
-        negative = (negative & !start.on) | (start.inward & start.on);
-        let mut t = near;
-        for i in 1..=self.steps {
-            let next = step.mul_add(l.real(f64::from(i)), near);
-            let change_to = self.field(l, o.along(d, next)).lt(zero);
-            let changed = ((change_to & !negative) | (negative & !change_to)) & clipped & !found;
-            low = l.select(changed, t, low);
-            high = l.select(changed, next, high);
-            found = found | changed;
-            if !(clipped & !found).any() {
-                break;
-            }
-            t = next;
-        }
-        if !found.any() {
-            return (near, found);
-        }
-        // Half the step as often as the significand has bits.
-        for _ in 0..L::UNIFORM_BITS.max(24) {
-            let middle = (low + high) * l.real(0.5);
-            let inside = self.field(l, o.along(d, middle)).lt(zero);
-            let same = (inside & negative) | (!inside & !negative);
-            low = l.select(same, middle, low);
-            high = l.select(same, high, middle);
-        }
-        ((low + high) * l.real(0.5), found)
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let o = self.inverse.point(l, ray.origin);
+                let d = self.inverse.vector(l, ray.direction);
+                let zero = l.real(0.0);
+                let (mut near, mut far) = (zero, limit);
+                for (o, d, c, h) in [
+                    (o.x, d.x, self.centre[0], self.half[0]),
+                    (o.y, d.y, self.centre[1], self.half[1]),
+                    (o.z, d.z, self.centre[2], self.half[2]),
+                ] {
+                    let inverse = l.real(1.0) / d;
+                    let (c, h) = (l.splat(c), l.splat(h));
+                    let (t1, t2) = ((c - h - o) * inverse, (c + h - o) * inverse);
+                    near = near.max(t1.min(t2));
+                    far = far.min(t1.max(t2));
+                }
+                let clipped = active & near.lt(far);
+                let mut found = l.mask(false);
+                let (mut low, mut high) = (near, near);
+                if !clipped.any() {
+                    return (near, found);
+                }
+                let step = (far - near) * l.real(1.0 / f64::from(self.steps));
+                let mut negative = self.field(l, o.along(d, near)).lt(zero);
+                // On the surface the field's sign at the start is rounding noise, its sign after it known.
+                negative = (negative & !start.on) | (start.inward & start.on);
+                let mut t = near;
+                for i in 1..=self.steps {
+                    let next = step.mul_add(l.real(f64::from(i)), near);
+                    let change_to = self.field(l, o.along(d, next)).lt(zero);
+                    let changed =
+                        ((change_to & !negative) | (negative & !change_to)) & clipped & !found;
+                    low = l.select(changed, t, low);
+                    high = l.select(changed, next, high);
+                    found = found | changed;
+                    if !(clipped & !found).any() {
+                        break;
+                    }
+                    t = next;
+                }
+                if !found.any() {
+                    return (near, found);
+                }
+                // Half the step as often as the significand has bits.
+                for _ in 0..L::UNIFORM_BITS.max(24) {
+                    let middle = (low + high) * l.real(0.5);
+                    let inside = self.field(l, o.along(d, middle)).lt(zero);
+                    let same = (inside & negative) | (!inside & !negative);
+                    low = l.select(same, middle, low);
+                    high = l.select(same, high, middle);
+                }
+                ((low + high) * l.real(0.5), found)
+            },
+        )
     }
 }

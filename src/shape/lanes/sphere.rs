@@ -31,10 +31,8 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     let root = c.max(l.real(0.0)).sqrt();
     let half = root * inverse_length;
     // δt ≤ (4e + δc/(2√c))/|d| + rounding; δc/√c is also at least twice δ√c when c > δc.
-    let error = (c_error / root + e.mul_add(l.real(4.0), l.real(0.0))).mul_add(
-        inverse_length,
-        (foot_t.abs() + half) * l.real(8.0 * u),
-    );
+    let error = (c_error / root + e.mul_add(l.real(4.0), l.real(0.0)))
+        .mul_add(inverse_length, (foot_t.abs() + half) * l.real(8.0 * u));
     Span {
         near: foot_t - half,
         far: foot_t + half,

@@ -1,0 +1,255 @@
+//! What can be asked for on the command line.
+
+#![allow(
+    dead_code,
+    reason = "not every command is there yet to read its arguments"
+)]
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use etalon::scene::Overrides;
+
+use super::values::{Crop, Instructions, Layer, Panels, Pixel, PlanChoice, Seconds, Size, setting};
+
+/// A physically based spectral renderer, and the instrument that proves its pictures right.
+#[derive(Debug, Parser)]
+#[command(
+    name = "etalon",
+    version,
+    propagate_version = true,
+    after_help = "Exit codes: 0 good, 1 the answer is no, 2 could not do it.\n\n\
+                  Example: etalon render scenes/spheres.toml -o spheres.exr"
+)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene to an OpenEXR file with its standard error and provenance.
+    Render(Box<Render>),
+    /// Say what is in a scene, what it needs, and what will be done about it.
+    Info(Info),
+    /// Intersect given rays with a scene and print the hits as CSV.
+    Trace(Trace),
+    /// Follow one camera path of a rendering and print each of its steps.
+    Replay(Replay),
+}
+
+/// The scene and what is changed in it.
+#[derive(Debug, Args)]
+pub struct SceneArguments {
+    /// The scene file (TOML).
+    #[arg(value_name = "SCENE.toml")]
+    pub scene: PathBuf,
+    /// Lay this over the scene after the panel: a dotted key and a TOML value or a bare word.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub set: Vec<(String, String)>,
+}
+
+impl SceneArguments {
+    /// What is laid over the file: the panel, each `--set` in order, then the options that stand
+    /// for keys of `[image]`. Values are the scene's to check.
+    pub fn overrides(&self, panel: Option<&str>, image: &[(&str, Option<String>)]) -> Overrides {
+        let options = image
+            .iter()
+            .filter_map(|(key, value)| Some((format!("image.{key}"), value.clone()?)));
+        Overrides {
+            panel: panel.map(str::to_owned),
+            set: self.set.iter().cloned().chain(options).collect(),
+        }
+    }
+}
+
+/// Arguments of `etalon render`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  etalon render scenes/spheres.toml
+  etalon render scenes/spheres.toml -o small.exr --size 200x150 --spp 64
+  etalon render scenes/spheres.toml --panel all --layers depth,normal,spectral:400-700:10
+  etalon render scenes/spheres.toml --time 60 --set materials.glass.glass=N-SF11")]
+pub struct Render {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The picture to write; by default the scene's name, with the panel's, ending in .exr.
+    #[arg(short, long, value_name = "OUT.exr")]
+    pub output: Option<PathBuf>,
+    /// The panel (named variant) to render, or `all` of them.
+    #[arg(long, value_name = "NAME|all")]
+    pub panel: Option<Panels>,
+    /// Options that stand for keys of `[image]`.
+    #[command(flatten)]
+    pub image: ImageOptions,
+    /// Stop after this time, between passes.
+    #[arg(long, value_name = "SECONDS")]
+    pub time: Option<Seconds>,
+    /// Render this part of the picture only: pixels from X0,Y0 up to but not including X1,Y1.
+    #[arg(long, value_name = "X0,Y0,X1,Y1")]
+    pub crop: Option<Crop>,
+    /// Threads to work with; by default one for each of the machine's.
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+    /// Further layers of the picture, separated by commas: depth, normal, object, material,
+    /// spectral[:from-to:step] (wavelengths in nm).
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub layers: Vec<Layer>,
+    /// Leave out of the loop what the scene does not need, or keep everything.
+    #[arg(long, value_enum, default_value_t)]
+    pub plan: PlanChoice,
+    /// Instruction set; the picture's bits are the same with each.
+    #[arg(long, value_enum, default_value_t)]
+    pub instructions: Instructions,
+    /// Say nothing on stderr but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+impl Render {
+    /// What is laid over the scene file for this panel.
+    pub fn overrides(&self, panel: Option<&str>) -> Overrides {
+        self.scene.overrides(panel, &self.image.keys())
+    }
+}
+
+/// Options that stand for keys of the scene's `[image]` table.
+#[derive(Debug, Args)]
+pub struct ImageOptions {
+    /// Camera paths per pixel.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub spp: Option<String>,
+    /// Width and height of the picture in pixels.
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// Longest path in segments: 1 is emitted light only, 2 direct light.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub max_depth: Option<String>,
+    /// Which points the estimator uses: sobol, independent, stratified, center.
+    #[arg(long, value_name = "S")]
+    pub sampler: Option<String>,
+    /// Independent scrambles per pixel, from which the standard error comes.
+    #[arg(long, value_name = "K", allow_negative_numbers = true)]
+    pub replicates: Option<String>,
+    /// Arithmetic of the path loop: auto, f32, f64.
+    #[arg(long, value_name = "auto|f32|f64")]
+    pub precision: Option<String>,
+    /// Wavelengths per path.
+    #[arg(long, value_name = "4|8", allow_negative_numbers = true)]
+    pub wavelengths: Option<String>,
+    /// Seed of all randomness.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub seed: Option<String>,
+}
+
+impl ImageOptions {
+    /// Keys of `[image]` and the values asked for.
+    fn keys(&self) -> [(&'static str, Option<String>); 8] {
+        [
+            ("spp", self.spp.clone()),
+            ("size", self.size.as_ref().map(ToString::to_string)),
+            ("max_depth", self.max_depth.clone()),
+            ("sampler", self.sampler.clone()),
+            ("replicates", self.replicates.clone()),
+            ("precision", self.precision.clone()),
+            ("wavelengths", self.wavelengths.clone()),
+            ("seed", self.seed.clone()),
+        ]
+    }
+}
+
+/// Arguments of `etalon info`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  etalon info scenes/spheres.toml
+  etalon info scenes/spheres.toml --panel a --set image.precision=f32")]
+pub struct Info {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The panel (named variant) to look at.
+    #[arg(long, value_name = "NAME")]
+    pub panel: Option<String>,
+}
+
+impl Info {
+    /// What is laid over the scene file.
+    pub fn overrides(&self) -> Overrides {
+        self.scene.overrides(self.panel.as_deref(), &[])
+    }
+}
+
+/// Arguments of `etalon trace`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+The rays are CSV with a heading that names the columns ox,oy,oz,dx,dy,dz (origin and direction, \
+world coordinates) and, if wanted, id, tmin and tmax, in any order. Numbers are read exactly as \
+the f64 they round to; tmax may be inf. A direction need not be of unit length, and t is in units \
+of it. A hit counts where tmin < t < tmax, and at t = 0 too where tmin is 0. Shapes are closed: \
+touching counts, but a ray in the plane of a flat shape misses it.
+
+The hits are CSV, one line a ray in the same order: id,hit,t,x,y,z,nx,ny,nz,object with enough \
+digits to give back each f64. The normal is of unit length and points outward (+z of flat shapes); \
+it is left empty where the surface has none, and everything after hit where nothing is hit. Of \
+objects at the same t, opaque ones come before glass, then those earlier in the file.
+
+Example:
+  printf 'ox,oy,oz,dx,dy,dz\\n0,0,5,0,0,-1\\n' | etalon trace scenes/spheres.toml --rays -")]
+pub struct Trace {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The CSV file of rays, or - for stdin.
+    #[arg(long, value_name = "FILE|-")]
+    pub rays: PathBuf,
+    /// The panel (named variant) to shoot at.
+    #[arg(long, value_name = "NAME")]
+    pub panel: Option<String>,
+    /// Say nothing on stderr but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+impl Trace {
+    /// What is laid over the scene file.
+    pub fn overrides(&self) -> Overrides {
+        self.scene.overrides(self.panel.as_deref(), &[])
+    }
+}
+
+/// Arguments of `etalon replay`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  etalon replay scenes/spheres.toml --pixel 120,80 --sample 17")]
+pub struct Replay {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The pixel, counted from 0,0 in the upper left corner.
+    #[arg(long, value_name = "X,Y")]
+    pub pixel: Pixel,
+    /// The camera path of this pixel, counted from 0.
+    #[arg(long, value_name = "I")]
+    pub sample: u32,
+    /// Seed of all randomness.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub seed: Option<String>,
+    /// The panel (named variant) to look at.
+    #[arg(long, value_name = "NAME")]
+    pub panel: Option<String>,
+}
+
+impl Replay {
+    /// What is laid over the scene file.
+    pub fn overrides(&self) -> Overrides {
+        let image = [("seed", self.seed.clone())];
+        self.scene.overrides(self.panel.as_deref(), &image)
+    }
+}

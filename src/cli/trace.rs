@@ -1,0 +1,158 @@
+//! `etalon trace`: given rays to hits.
+
+mod rays;
+mod target;
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+use etalon::scene;
+use rayon::prelude::*;
+
+use super::args::Trace;
+use super::error::CommandError;
+use super::{Answer, tell};
+pub use rays::RayError;
+use rays::{Line, Lines, Table};
+use target::{Decided, FirstHit, Target};
+
+const HEADING: &str = "id,hit,t,x,y,z,nx,ny,nz,object\n";
+
+/// Rays of one piece of work: some milliseconds of it.
+const PIECE: usize = 1 << 10;
+/// Pieces read before they are worked on, enough for the threads of a large machine.
+const PIECES: usize = 256;
+
+/// Prints the first hit of each ray.
+pub fn run(arguments: &Trace) -> Result<Answer, CommandError> {
+    let scene = scene::load(&arguments.scene.scene, &arguments.overrides())?;
+    let target = Target::new(&scene)?;
+    let mut lines = Lines::open(&arguments.rays)?;
+    let table = lines.heading()?;
+    if !arguments.quiet && !table.ignored.is_empty() {
+        tell(&format!(
+            "note: ignored columns: {}",
+            table.ignored.join(", ")
+        ));
+    }
+    let mut decided = Decided::default();
+    let mut output = io::stdout().lock();
+    output
+        .write_all(HEADING.as_bytes())
+        .map_err(CommandError::Output)?;
+    loop {
+        let (batch, end) = read_batch(&mut lines);
+        let pieces: Vec<Piece> = batch
+            .par_chunks(PIECE)
+            .map(|lines| trace(&target, &table, lines))
+            .collect();
+        for piece in pieces {
+            output
+                .write_all(piece.text.as_bytes())
+                .map_err(CommandError::Output)?;
+            decided = decided.joined(piece.decided);
+            piece.end?;
+        }
+        if end? {
+            break;
+        }
+    }
+    output.flush().map_err(CommandError::Output)?;
+    if !arguments.quiet {
+        tell(&summary(&decided));
+    }
+    Ok(Answer::Good)
+}
+
+/// The next lines, and whether they are the last ones; those before an unreadable one count.
+fn read_batch(lines: &mut Lines) -> (Vec<Line>, Result<bool, RayError>) {
+    let mut batch = Vec::with_capacity(PIECE);
+    while batch.len() < PIECE * PIECES {
+        match lines.next_line() {
+            Ok(Some(line)) => batch.push(line),
+            Ok(None) => return (batch, Ok(true)),
+            Err(error) => return (batch, Err(error)),
+        }
+    }
+    (batch, Ok(false))
+}
+
+/// Some rows of the output.
+struct Piece {
+    text: String,
+    decided: Decided,
+    /// The first line that is no ray ends the table.
+    end: Result<(), RayError>,
+}
+
+fn trace(target: &Target, table: &Table, lines: &[Line]) -> Piece {
+    let mut piece = Piece {
+        text: String::new(),
+        decided: Decided::default(),
+        end: Ok(()),
+    };
+    for line in lines {
+        let row = match table.ray(line) {
+            Ok(row) => row,
+            Err(error) => {
+                piece.end = Err(error);
+                break;
+            }
+        };
+        let hit = target.first_hit(&row.query, &mut piece.decided);
+        push_field(&mut piece.text, &row.id);
+        match hit {
+            Some(hit) => push_hit(&mut piece.text, target, &hit),
+            None => piece.text.push_str(",0,,,,,,,,\n"),
+        }
+    }
+    piece
+}
+
+fn push_hit(text: &mut String, target: &Target, hit: &FirstHit) {
+    text.push_str(",1");
+    push_numbers(text, &[hit.t]);
+    push_numbers(text, &hit.point.to_array());
+    match hit.normal {
+        Some(normal) => push_numbers(text, &normal.to_array()),
+        None => text.push_str(",,,"),
+    }
+    text.push(',');
+    push_field(text, target.name(hit.object));
+    text.push('\n');
+}
+
+/// The shortest digits that give back the same f64.
+fn push_numbers(text: &mut String, numbers: &[f64]) {
+    for number in numbers {
+        // Writing to a string cannot fail.
+        let _ = write!(text, ",{number:?}");
+    }
+}
+
+/// A field, in quotes where it has to be (RFC 4180).
+fn push_field(text: &mut String, field: &str) {
+    if field.contains(['"', ',', '\n', '\r']) {
+        let _ = write!(text, "\"{}\"", field.replace('"', "\"\""));
+    } else {
+        text.push_str(field);
+    }
+}
+
+/// Who has decided what, for stderr.
+fn summary(decided: &Decided) -> String {
+    let Decided {
+        rays,
+        hits,
+        ladder,
+        baseline,
+    } = decided;
+    let mut text = format!(
+        "{rays} rays, {hits} hits; questions decided in f64: {}, in double-double: {}, exactly: {}",
+        ladder.double, ladder.double_double, ladder.exact
+    );
+    if *baseline > 0 {
+        let _ = write!(text, "; by the baseline finder, not certified: {baseline}");
+    }
+    text
+}

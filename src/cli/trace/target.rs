@@ -1,0 +1,149 @@
+//! The scene as rays meet it.
+
+use etalon::scene::{Implicit, Named, Object, Scene, Shape, Surface};
+use etalon::shape::implicit::baseline::{ImplicitHit, PlacedImplicit};
+use etalon::shape::{Placed, Query, ShapeKind, Start, Tally, nearest};
+use glam::DVec3;
+
+use crate::cli::error::CommandError;
+
+/// All objects of a scene, placed.
+pub struct Target {
+    names: Vec<String>,
+    /// At equal t the lower one wins: 0 for opaque objects, 1 for glass.
+    priorities: Vec<u8>,
+    certified: Vec<Placed>,
+    /// Index in the scene of each of `certified`.
+    certified_index: Vec<usize>,
+    implicit: Vec<(usize, PlacedImplicit)>,
+}
+
+/// The first thing a ray meets.
+pub struct FirstHit {
+    /// Index of the object.
+    pub object: usize,
+    /// Where on the ray, in units of its direction.
+    pub t: f64,
+    /// World coordinates.
+    pub point: DVec3,
+    /// Unit outward normal in the world, where there is one.
+    pub normal: Option<DVec3>,
+}
+
+/// Who has decided how many questions.
+#[derive(Clone, Copy, Default)]
+pub struct Decided {
+    /// Rays.
+    pub rays: u64,
+    /// Rays that hit something.
+    pub hits: u64,
+    /// Certified shapes, by rung.
+    pub ladder: Tally,
+    /// Implicit surfaces, by the baseline finder.
+    pub baseline: u64,
+}
+
+impl Decided {
+    /// The counts of both together.
+    pub fn joined(self, other: Self) -> Self {
+        Self {
+            rays: self.rays + other.rays,
+            hits: self.hits + other.hits,
+            ladder: self.ladder.joined(other.ladder),
+            baseline: self.baseline + other.baseline,
+        }
+    }
+}
+
+impl Target {
+    /// Places the objects of a scene.
+    pub fn new(scene: &Scene) -> Result<Self, CommandError> {
+        let mut target = Self {
+            names: scene.objects.iter().map(|o| o.name.clone()).collect(),
+            priorities: scene.objects.iter().map(|o| priority(scene, o)).collect(),
+            certified: Vec::new(),
+            certified_index: Vec::new(),
+            implicit: Vec::new(),
+        };
+        for (index, Named { name, value }) in scene.objects.iter().enumerate() {
+            let singular = |_| CommandError::Singular { name: name.clone() };
+            match certified_kind(&value.shape) {
+                Ok(kind) => {
+                    let placed = Placed::new(kind, &value.to_world).map_err(singular)?;
+                    target.certified.push(placed);
+                    target.certified_index.push(index);
+                }
+                Err(implicit) => {
+                    let placed = PlacedImplicit::new(implicit, &value.to_world);
+                    target.implicit.push((index, placed.map_err(singular)?));
+                }
+            }
+        }
+        Ok(target)
+    }
+
+    /// The name of an object.
+    pub fn name(&self, object: usize) -> &str {
+        &self.names[object]
+    }
+
+    /// The first hit of a ray.
+    pub fn first_hit(&self, query: &Query, decided: &mut Decided) -> Option<FirstHit> {
+        let mut first = self.first_certified(query, &mut decided.ladder);
+        for (object, implicit) in &self.implicit {
+            decided.baseline += 1;
+            let Some(ImplicitHit { t, point, normal }) = implicit.first_hit(query) else {
+                continue;
+            };
+            let hit = FirstHit {
+                object: *object,
+                t,
+                point,
+                normal,
+            };
+            if first.as_ref().is_none_or(|first| self.beats(&hit, first)) {
+                first = Some(hit);
+            }
+        }
+        decided.rays += 1;
+        decided.hits += u64::from(first.is_some());
+        first
+    }
+
+    fn first_certified(&self, query: &Query, tally: &mut Tally) -> Option<FirstHit> {
+        let start = |_| Start::Free;
+        let priority = |index: usize| self.priorities[self.certified_index[index]];
+        let (index, hit) = nearest(&self.certified, query, start, priority, tally)?;
+        Some(FirstHit {
+            object: self.certified_index[index],
+            t: hit.t,
+            point: hit.point,
+            normal: Some(hit.normal),
+        })
+    }
+
+    /// By t, then opaque before glass, then by index. The t of implicit surfaces is known to f64
+    /// at best, so equality of these numbers is all the equality there is.
+    fn beats(&self, hit: &FirstHit, other: &FirstHit) -> bool {
+        let rank = |hit: &FirstHit| (self.priorities[hit.object], hit.object);
+        hit.t < other.t || (hit.t == other.t && rank(hit) < rank(other))
+    }
+}
+
+fn priority(scene: &Scene, object: &Named<Object>) -> u8 {
+    let material = scene.materials.get(object.value.material);
+    u8::from(material.is_some_and(|m| matches!(m.value.surface, Surface::Glass(_))))
+}
+
+/// The canonical shape, or else the implicit surface.
+fn certified_kind(shape: &Shape) -> Result<ShapeKind, &Implicit> {
+    match shape {
+        Shape::Sphere => Ok(ShapeKind::Sphere),
+        Shape::Cube => Ok(ShapeKind::Cube),
+        Shape::Cylinder => Ok(ShapeKind::Cylinder),
+        Shape::Disk => Ok(ShapeKind::Disk),
+        Shape::Rectangle => Ok(ShapeKind::Rectangle),
+        Shape::Plane => Ok(ShapeKind::Plane),
+        Shape::Implicit(implicit) => Err(implicit),
+    }
+}

@@ -1,0 +1,214 @@
+//! Values of options, as they are written.
+
+#![allow(
+    dead_code,
+    reason = "not every command is there yet to read its arguments"
+)]
+
+use std::fmt;
+use std::str::FromStr;
+use std::time::Duration;
+
+use clap::ValueEnum;
+
+/// What is wrong with a value.
+#[derive(Debug, thiserror::Error)]
+#[error("expected {0}")]
+pub struct Expected(&'static str);
+
+/// `key=value` as a pair; what the two may be is the scene's to say.
+pub fn setting(text: &str) -> Result<(String, String), Expected> {
+    let (key, value) = text.split_once('=').ok_or(Expected("KEY=VALUE"))?;
+    Ok((key.to_owned(), value.to_owned()))
+}
+
+/// `N` numbers between separators, and no more.
+fn numbers<T: FromStr, const N: usize>(text: &str, separator: char) -> Option<[T; N]> {
+    let numbers: Option<Vec<T>> = text
+        .split(separator)
+        .map(|part| part.trim().parse().ok())
+        .collect();
+    numbers?.try_into().ok()
+}
+
+/// One panel, or each of them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Panels {
+    /// All panels of the file.
+    All,
+    /// The one with this name.
+    Named(String),
+}
+
+impl FromStr for Panels {
+    type Err = std::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(match text {
+            "all" => Self::All,
+            name => Self::Named(name.to_owned()),
+        })
+    }
+}
+
+/// Width and height, shown as a TOML array.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Size([u64; 2]);
+
+impl FromStr for Size {
+    type Err = Expected;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        numbers(text, 'x')
+            .map(Self)
+            .ok_or(Expected("width and height in pixels, such as 640x480"))
+    }
+}
+
+impl fmt::Display for Size {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "[{}, {}]", self.0[0], self.0[1])
+    }
+}
+
+/// A rectangle of pixels that is not empty.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Crop {
+    /// First column and row.
+    pub from: [u32; 2],
+    /// The column and row after the last.
+    pub to: [u32; 2],
+}
+
+impl FromStr for Crop {
+    type Err = Expected;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let expected = Expected("X0,Y0,X1,Y1 in pixels with X0 < X1 and Y0 < Y1");
+        match numbers(text, ',') {
+            Some([x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Ok(Self {
+                from: [x0, y0],
+                to: [x1, y1],
+            }),
+            _ => Err(expected),
+        }
+    }
+}
+
+/// Column and row of a pixel, from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pixel(pub [u32; 2]);
+
+impl FromStr for Pixel {
+    type Err = Expected;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        numbers(text, ',')
+            .map(Self)
+            .ok_or(Expected("X,Y: column and row, counted from 0"))
+    }
+}
+
+/// A stretch of time above zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Seconds(pub Duration);
+
+impl FromStr for Seconds {
+    type Err = Expected;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        text.parse()
+            .ok()
+            .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+            .filter(|duration| !duration.is_zero())
+            .map(Self)
+            .ok_or(Expected("a number of seconds above 0"))
+    }
+}
+
+/// A further layer of the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Layer {
+    /// Distance of the first visible surface from the camera.
+    Depth,
+    /// Its unit normal.
+    Normal,
+    /// Index of its object.
+    Object,
+    /// Index of its material.
+    Material,
+    /// Spectral radiance in bins.
+    Spectral(Option<SpectralRange>),
+}
+
+/// Centres of spectral bins, nm: from, from + step … up to `to`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpectralRange {
+    /// First wavelength.
+    pub from: f64,
+    /// Last wavelength, at most.
+    pub to: f64,
+    /// Distance of neighbours.
+    pub step: f64,
+}
+
+impl FromStr for Layer {
+    type Err = Expected;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match text {
+            "depth" => Ok(Self::Depth),
+            "normal" => Ok(Self::Normal),
+            "object" => Ok(Self::Object),
+            "material" => Ok(Self::Material),
+            "spectral" => Ok(Self::Spectral(None)),
+            _ => match text.strip_prefix("spectral:") {
+                Some(range) => range.parse().map(|range| Self::Spectral(Some(range))),
+                None => Err(Expected(
+                    "depth, normal, object, material or spectral[:from-to:step]",
+                )),
+            },
+        }
+    }
+}
+
+impl FromStr for SpectralRange {
+    type Err = Expected;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let read = || {
+            let (range, step) = text.split_once(':')?;
+            let [from, to] = numbers::<f64, 2>(range, '-')?;
+            let step: f64 = step.trim().parse().ok()?;
+            let proper = from > 0.0 && to >= from && to.is_finite() && step > 0.0;
+            (proper && step.is_finite()).then_some(Self { from, to, step })
+        };
+        read().ok_or(Expected(
+            "spectral:from-to:step in nm, such as spectral:400-700:10",
+        ))
+    }
+}
+
+/// What the plan leaves out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum PlanChoice {
+    /// What the scene does not need.
+    #[default]
+    Auto,
+    /// Nothing.
+    Full,
+}
+
+/// Instruction sets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum Instructions {
+    /// The best this machine has.
+    #[default]
+    Auto,
+    /// AVX-512.
+    Avx512,
+    /// AVX2 and FMA.
+    Avx2,
+    /// SSE2, with fused multiply-add in software.
+    Sse2,
+}

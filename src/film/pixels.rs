@@ -1,0 +1,98 @@
+//! Sums over samples: what a render accumulates, and what that says of the picture.
+//!
+//! Every pixel keeps one sum a replicate, in f64, added in the order of its samples; means,
+//! standard errors and the picture's colours are formed from those sums alone, so they do not
+//! depend on how the work was shared out.
+
+use crate::sample::sequence::Replicates;
+use crate::spectrum::observer::XYZ_TO_LINEAR_SRGB;
+
+/// Most replicates that a pixel can have with growing replicates.
+const GROWN: u32 = 8;
+
+/// Sums of X, Y, Z by pixel and replicate.
+#[derive(Debug, Clone)]
+pub struct Pixels {
+    replicates: Replicates,
+    slots: usize,
+    sums: Vec<[f64; 3]>,
+}
+
+/// A pixel's mean and, where replicates allow, its standard error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// Mean of each channel.
+    pub mean: [f64; 3],
+    /// Standard error of each mean; NaN with a single replicate.
+    pub standard_error: [f64; 3],
+}
+
+/// XYZ to linear Rec. 709.
+pub fn to_rgb(xyz: [f64; 3]) -> [f64; 3] {
+    XYZ_TO_LINEAR_SRGB.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])
+}
+
+impl Pixels {
+    /// Zero sums for this many pixels.
+    pub fn new(pixels: usize, replicates: Replicates) -> Self {
+        let slots = match replicates {
+            Replicates::Fixed(count) => count,
+            Replicates::Growing => GROWN,
+        } as usize;
+        Self {
+            replicates,
+            slots,
+            sums: vec![[0.0; 3]; pixels * slots],
+        }
+    }
+
+    /// Adds sample `sample` of a pixel; a pixel's samples must come in order.
+    #[inline]
+    pub fn add(&mut self, pixel: usize, sample: u32, xyz: [f64; 3]) {
+        let (replicate, _) = self.replicates.place(sample);
+        let sum = &mut self.sums[pixel * self.slots + replicate as usize];
+        for (sum, value) in sum.iter_mut().zip(xyz) {
+            *sum += value;
+        }
+    }
+
+    /// Mean and standard error of a pixel after `samples` samples, channels mapped by `channels`.
+    ///
+    /// With nᵣ samples in replicate r and m its mean, the squared standard error is
+    /// Σ nᵣ (mᵣ − m)²/((K − 1) Σ nᵣ), unbiased where a replicate's variance falls as 1/nᵣ, and for
+    /// any law where all have the same number.
+    pub fn estimate(
+        &self,
+        pixel: usize,
+        samples: u32,
+        channels: impl Fn([f64; 3]) -> [f64; 3],
+    ) -> Estimate {
+        let count = self.replicates.count(samples);
+        let sums = &self.sums[pixel * self.slots..][..self.slots];
+        let total = f64::from(samples);
+        let mut sum = [0.0; 3];
+        for replicate in sums {
+            for (sum, value) in sum.iter_mut().zip(replicate) {
+                *sum += value;
+            }
+        }
+        let mean = channels(sum.map(|s| s / total));
+        let mut squares = [0.0; 3];
+        for (r, replicate) in sums.iter().enumerate().take(count as usize) {
+            let own = f64::from(self.replicates.samples_of(r as u32, samples));
+            let own_mean = channels(replicate.map(|s| s / own));
+            for ((square, own_mean), mean) in squares.iter_mut().zip(own_mean).zip(mean) {
+                *square += own * (own_mean - mean) * (own_mean - mean);
+            }
+        }
+        let freedom = if count > 1 {
+            f64::from(count - 1)
+        } else {
+            f64::NAN
+        };
+        Estimate {
+            mean,
+            standard_error: squares.map(|s| (s / (freedom * total)).sqrt()),
+        }
+    }
+}

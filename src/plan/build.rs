@@ -1,0 +1,351 @@
+//! From a scene and its choices to the tables of the loop.
+
+use glam::DVec3;
+
+use super::PlanError;
+use super::choose::Choices;
+use super::extent::{about_camera, columns, is_similarity, perpendicular, translation};
+use crate::camera::LaneCamera;
+use crate::integrate::develop::Spectrometer;
+use crate::integrate::model::{Checker, Model, ObjectShading, Scatter};
+use crate::light::{CubeLight, LaneLight, LightShape, PlanarLight, RectangleLight, SphereLight};
+use crate::math::affine::Affine;
+use crate::math::lanes::Scalar;
+use crate::sample::sequence::Sequence;
+use crate::scene::{Emission, Light, Object, Scene, Shape, Sides, Surface};
+use crate::shape::lanes::LaneShape;
+use crate::shape::lanes::implicit::LaneImplicit;
+use crate::shape::resolve::Resolver;
+use crate::shape::{Placed, ShapeKind};
+use crate::spectrum::Spectrum;
+use crate::spectrum::cells::cells;
+use crate::spectrum::grid::{CELLS, CELLS_PER_NM, LONGEST, SHORTEST, SpectrumBank};
+use crate::spectrum::ior::RefractiveIndex;
+use crate::spectrum::observer::{self, spectrum_to_xyz};
+
+/// Builds model and spectrometer.
+///
+/// # Errors
+/// [`PlanError::NotInvertible`] for a transform whose inverse leaves the range of f64.
+pub fn build<T: Scalar>(
+    scene: &Scene,
+    choices: &Choices,
+) -> Result<(Model<T>, Spectrometer<T>), PlanError> {
+    let mut builder = Builder::<T>::default();
+    for (index, object) in scene.objects.iter().enumerate() {
+        let placed = builder
+            .place(scene, index)
+            .ok_or(PlanError::NotInvertible {
+                name: object.name.clone(),
+            })?;
+        builder.dress(scene, index, &placed);
+    }
+    for light in &scene.lights {
+        builder.free_light(scene, light);
+    }
+    let environment = scene
+        .environment
+        .as_ref()
+        .map(|spectrum| builder.spectrum(spectrum));
+    let lights = builder.pick();
+    let model = Model {
+        camera: LaneCamera::new(&scene.camera, scene.image.size),
+        sequence: Sequence::new(
+            scene.image.sampler,
+            scene.image.seed,
+            scene.image.spp,
+            choices.replicates,
+        ),
+        max_depth: scene.image.max_depth.unwrap_or(u32::MAX),
+        needs: choices.needs,
+        shapes: builder.shapes,
+        implicits: builder.implicits,
+        shading: builder.shading,
+        lights,
+        environment,
+        spectra: builder.bank,
+        resolver: builder.resolver,
+    };
+    Ok((model, spectrometer()))
+}
+
+/// The observer on the grid.
+fn spectrometer<T: Scalar>() -> Spectrometer<T> {
+    let curves: [Vec<f64>; 3] = std::array::from_fn(|i| {
+        (0..CELLS)
+            .map(|cell| {
+                // A quarter-nanometre cell never straddles a node of the 1 nm table, so the mean
+                // of the interpolant is its value in the middle.
+                let nm = SHORTEST + (cell as f64 + 0.5) / CELLS_PER_NM;
+                observer::xyz_bar(nm)[i] / observer::Y_INTEGRAL
+            })
+            .collect()
+    });
+    Spectrometer::new([&curves[0], &curves[1], &curves[2]])
+}
+
+/// Where an object stands: its map about the camera and the inverse.
+struct Placement {
+    to_world: Affine,
+    inverse: Affine,
+}
+
+#[derive(Default)]
+struct Builder<T> {
+    bank: SpectrumBank<T>,
+    known: Vec<(Spectrum, u32)>,
+    known_indices: Vec<(RefractiveIndex, [u32; 2])>,
+    shapes: Vec<LaneShape<T>>,
+    implicits: Vec<(u32, LaneImplicit<T>)>,
+    shading: Vec<ObjectShading<T>>,
+    lights: Vec<(LaneLight<T>, f64)>,
+    resolver: Resolver,
+    reach: f64,
+}
+
+impl<T: Scalar> Builder<T> {
+    /// Start of a spectrum's cell means in the bank, shared by equal spectra.
+    fn spectrum(&mut self, spectrum: &Spectrum) -> u32 {
+        if let Some((_, start)) = self.known.iter().find(|(s, _)| s == spectrum) {
+            return *start;
+        }
+        let start = self.bank.push(&cells(spectrum));
+        self.known.push((spectrum.clone(), start));
+        start
+    }
+
+    /// Starts of n and k: at the grid's nodes, to be interpolated, for what refracts, and in the
+    /// middle of its cells for what only reflects.
+    fn refractive_index(&mut self, index: &RefractiveIndex) -> [u32; 2] {
+        let shift = match index {
+            RefractiveIndex::Complex { .. } => 0.5,
+            _ => 0.0,
+        };
+        if let Some((_, starts)) = self.known_indices.iter().find(|(i, _)| i == index) {
+            return *starts;
+        }
+        let nodes: Vec<(f64, f64)> = (0..=CELLS)
+            .map(|node| index.n_k((SHORTEST + (node as f64 + shift) / CELLS_PER_NM).min(LONGEST)))
+            .collect();
+        let n: Vec<f64> = nodes.iter().map(|nk| nk.0).collect();
+        let k: Vec<f64> = nodes.iter().map(|nk| nk.1).collect();
+        let starts = [self.bank.push(&n), self.bank.push(&k)];
+        self.known_indices.push((index.clone(), starts));
+        starts
+    }
+
+    /// Places object `index` for the lanes and for the ladder.
+    fn place(&mut self, scene: &Scene, index: usize) -> Option<Placement> {
+        let object = &scene.objects[index].value;
+        let to_world = about_camera(scene, object);
+        let kind = ShapeKind::of(&object.shape);
+        let placed = Placed::new(kind.unwrap_or(ShapeKind::Cube), &to_world).ok()?;
+        let inverse = placed.inverse();
+        if !inverse.rows.iter().flatten().all(|x| x.is_finite()) {
+            return None;
+        }
+        self.shapes.push(LaneShape::new(kind, &to_world, &inverse));
+        match &object.shape {
+            Shape::Implicit(implicit) => {
+                let lanes =
+                    LaneImplicit::new(implicit.surface, implicit.inside, implicit.steps, &inverse);
+                self.implicits.push((index as u32, lanes));
+            }
+            _ => {
+                let surface = &scene.materials[object.material].value.surface;
+                let priority = u8::from(matches!(surface, Surface::Glass(_)));
+                self.resolver.push(index as u32, placed, priority);
+            }
+        }
+        if let Some(bounds) = super::extent::bounds(&object.shape, &to_world) {
+            self.reach = self.reach.max(bounds.reach());
+        }
+        Some(Placement { to_world, inverse })
+    }
+
+    /// Gives object `index` its appearance, and makes a light of it if it can be sampled.
+    fn dress(&mut self, scene: &Scene, index: usize, placement: &Placement) {
+        let object = &scene.objects[index].value;
+        let material = &scene.materials[object.material].value;
+        let mut shading = ObjectShading {
+            scatter: Scatter::Black,
+            spectrum: 0,
+            extinction: 0,
+            disperses: false,
+            checker: None,
+            emission: None,
+            emits: [false; 2],
+            light: None,
+            material: object.material as u32,
+        };
+        match &material.surface {
+            Surface::Black => {}
+            Surface::Diffuse(albedo) => {
+                shading.scatter = Scatter::Diffuse;
+                shading.spectrum = self.spectrum(albedo);
+            }
+            Surface::Conductor(index) => {
+                shading.scatter = Scatter::Conductor;
+                [shading.spectrum, shading.extinction] = self.refractive_index(index);
+            }
+            Surface::IdealMirror(reflectance) => {
+                shading.scatter = Scatter::IdealMirror;
+                shading.spectrum = self.spectrum(reflectance);
+            }
+            Surface::Glass(index) => {
+                shading.scatter = Scatter::Glass;
+                shading.spectrum = self.refractive_index(index)[0];
+                shading.disperses = index.disperses();
+            }
+            Surface::Checkerboard { albedo, cell } => {
+                shading.scatter = Scatter::Diffuse;
+                shading.spectrum = self.spectrum(&albedo[0]);
+                shading.checker = Some(Checker {
+                    frequency: object.size.to_array().map(|s| T::from_f64(s / cell)),
+                    odd: self.spectrum(&albedo[1]),
+                });
+            }
+        }
+        if let Some(emission) = &material.emission {
+            shading.emission = Some(self.spectrum(&emission.radiance));
+            shading.emits = sides(emission.sides);
+            if let Some((shape, area)) = area_light(object, placement, shading.emits) {
+                let power = area * std::f64::consts::PI * strength(&emission.radiance);
+                if power > 0.0 {
+                    shading.light = Some(self.lights.len() as u32);
+                    self.light(shape, power, emission, index as u32);
+                }
+            }
+        }
+        self.shading.push(shading);
+    }
+
+    fn light(&mut self, shape: LightShape<T>, power: f64, emission: &Emission, object: u32) {
+        let spectrum = self.spectrum(&emission.radiance);
+        let light = LaneLight {
+            shape,
+            probability: T::default(),
+            below: T::default(),
+            spectrum,
+            object,
+        };
+        self.lights.push((light, power));
+    }
+
+    /// A light without a surface.
+    fn free_light(&mut self, scene: &Scene, light: &Light) {
+        let scalars = |v: DVec3| v.to_array().map(T::from_f64);
+        let (shape, spectrum, power) = match light {
+            Light::Point { at, intensity } => (
+                LightShape::Point(scalars(*at - scene.camera.from)),
+                intensity,
+                4.0 * std::f64::consts::PI * strength(intensity),
+            ),
+            Light::Directional {
+                direction,
+                irradiance,
+            } => (
+                LightShape::Directional(scalars(-*direction)),
+                irradiance,
+                std::f64::consts::PI * self.reach * self.reach * strength(irradiance),
+            ),
+        };
+        if power > 0.0 {
+            let light = LaneLight {
+                shape,
+                probability: T::default(),
+                below: T::default(),
+                spectrum: self.spectrum(spectrum),
+                object: u32::MAX,
+            };
+            self.lights.push((light, power));
+        }
+    }
+
+    /// Probabilities of the lights: half in equal parts, half by power, so that a weak light close
+    /// by is not starved.
+    fn pick(&mut self) -> Vec<LaneLight<T>> {
+        let total: f64 = self.lights.iter().map(|(_, power)| power).sum();
+        let count = self.lights.len() as f64;
+        let mut below = T::default();
+        let mut sum = 0.0;
+        let lights = std::mem::take(&mut self.lights);
+        let last = lights.len().saturating_sub(1);
+        lights
+            .into_iter()
+            .enumerate()
+            .map(|(i, (mut light, power))| {
+                sum += 0.5 / count + 0.5 * power / total;
+                let end = if i == last { 1.0 } else { sum };
+                light.below = below;
+                // The probability is what the comparison with the *rounded* bounds realises.
+                let next = T::from_f64(end);
+                light.probability = T::from_f64(next.to_f64() - below.to_f64());
+                below = next;
+                light
+            })
+            .collect()
+    }
+}
+
+/// Whether front and back emit.
+fn sides(sides: Sides) -> [bool; 2] {
+    match sides {
+        Sides::Front => [true, false],
+        Sides::Back => [false, true],
+        Sides::Both => [true, true],
+    }
+}
+
+/// How much a spectrum counts when lights are chosen: its luminance, and a little of its plain
+/// mean so that light outside of the visible is still sampled.
+fn strength(spectrum: &Spectrum) -> f64 {
+    spectrum_to_xyz(spectrum)[1] + 1e-3 * spectrum.max_value()
+}
+
+/// The sampler of an emitting object and its area; `None` where only scattered rays find it.
+fn area_light<T: Scalar>(
+    object: &Object,
+    placement: &Placement,
+    emits: [bool; 2],
+) -> Option<(LightShape<T>, f64)> {
+    let [a, b, c] = columns(&placement.to_world);
+    let centre = translation(&placement.to_world);
+    let normal = |axis: usize| {
+        let row = placement.inverse.rows[axis];
+        DVec3::new(row[0], row[1], row[2]).normalize()
+    };
+    match object.shape {
+        Shape::Rectangle => {
+            let area = 4.0 * a.cross(b).length();
+            let shape = if perpendicular(a, b) {
+                LightShape::Rectangle(RectangleLight::new(centre, [a, b], normal(2), emits))
+            } else {
+                LightShape::Parallelogram(PlanarLight::new(centre, [a, b], normal(2), 4.0, emits))
+            };
+            Some((shape, area))
+        }
+        Shape::Disk => {
+            let pi = std::f64::consts::PI;
+            let light = PlanarLight::new(centre, [a, b], normal(2), pi, emits);
+            Some((LightShape::Disk(light), pi * a.cross(b).length()))
+        }
+        Shape::Sphere if is_similarity(&placement.to_world) => {
+            let radius = a.length();
+            let light = SphereLight::new(centre, radius, emits);
+            Some((
+                LightShape::Sphere(light),
+                4.0 * std::f64::consts::PI * radius * radius,
+            ))
+        }
+        Shape::Cube => {
+            let normals = [normal(0), normal(1), normal(2)];
+            let area = 8.0 * (a.cross(b).length() + b.cross(c).length() + c.cross(a).length());
+            Some((
+                LightShape::Cube(CubeLight::new(centre, [a, b, c], normals, emits)),
+                area,
+            ))
+        }
+        Shape::Sphere | Shape::Cylinder | Shape::Plane | Shape::Implicit(_) => None,
+    }
+}

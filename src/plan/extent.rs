@@ -1,0 +1,191 @@
+//! How large things are and how close, for the choice of precision.
+
+use glam::DVec3;
+
+use crate::camera::pixel_size;
+use crate::math::affine::Affine;
+use crate::scene::{Object, Projection, Scene, Shape};
+
+/// A bounding box about the camera; infinite planes have none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// Lower corner.
+    pub low: DVec3,
+    /// Upper corner.
+    pub high: DVec3,
+}
+
+/// The object's map with the camera at the origin.
+pub fn about_camera(scene: &Scene, object: &Object) -> Affine {
+    let mut rows = object.to_world.rows;
+    for (row, from) in rows.iter_mut().zip(scene.camera.from.to_array()) {
+        row[3] -= from;
+    }
+    Affine { rows }
+}
+
+/// Bounds of a placed shape: the image of its canonical box.
+pub fn bounds(shape: &Shape, to_world: &Affine) -> Option<Bounds> {
+    let (low, high) = match shape {
+        Shape::Plane => return None,
+        Shape::Sphere | Shape::Cube | Shape::Cylinder => (-DVec3::ONE, DVec3::ONE),
+        Shape::Disk | Shape::Rectangle => (DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.0)),
+        Shape::Implicit(implicit) => (implicit.inside[0], implicit.inside[1]),
+    };
+    let centre = to_world.point((low + high) / 2.0);
+    let half = (high - low) / 2.0;
+    let reach = DVec3::from_array(
+        to_world
+            .rows
+            .map(|row| row[0].abs() * half.x + row[1].abs() * half.y + row[2].abs() * half.z),
+    );
+    Some(Bounds {
+        low: centre - reach,
+        high: centre + reach,
+    })
+}
+
+impl Bounds {
+    /// Distance between two boxes; 0 where they touch or overlap.
+    pub fn gap(&self, other: &Self) -> f64 {
+        let apart = (other.low - self.high).max(self.low - other.high);
+        apart.max(DVec3::ZERO).length()
+    }
+
+    /// Largest magnitude of a coordinate.
+    pub fn reach(&self) -> f64 {
+        self.low.abs().max(self.high.abs()).max_element()
+    }
+}
+
+/// Centre and radius where the object is a sphere under a similarity.
+pub fn as_ball(object: &Object, to_world: &Affine) -> Option<(DVec3, f64)> {
+    if object.shape != Shape::Sphere {
+        return None;
+    }
+    let axes = columns(to_world);
+    let radius = axes[0].length();
+    is_similarity(to_world).then_some((translation(to_world), radius))
+}
+
+/// Images of the axes.
+pub fn columns(to_world: &Affine) -> [DVec3; 3] {
+    let r = &to_world.rows;
+    std::array::from_fn(|j| DVec3::new(r[0][j], r[1][j], r[2][j]))
+}
+
+/// Image of the origin.
+pub fn translation(to_world: &Affine) -> DVec3 {
+    let r = &to_world.rows;
+    DVec3::new(r[0][3], r[1][3], r[2][3])
+}
+
+/// Rounded rotations are off by a few 2⁻⁵³ an entry and composed from at most a few dozen.
+const ROUNDED: f64 = 1e-13;
+
+/// Whether two vectors are perpendicular up to the rounding of composed rotations.
+pub fn perpendicular(a: DVec3, b: DVec3) -> bool {
+    a.dot(b).abs() <= ROUNDED * a.length() * b.length()
+}
+
+/// Whether the linear part is a rotation or reflection times a scale, up to rounding.
+pub fn is_similarity(to_world: &Affine) -> bool {
+    let [a, b, c] = columns(to_world);
+    let same = |x: DVec3, y: DVec3| (x.length() - y.length()).abs() <= ROUNDED * x.length();
+    same(a, b) && same(a, c) && perpendicular(a, b) && perpendicular(b, c) && perpendicular(c, a)
+}
+
+/// Pairs are compared up to this many objects; larger scenes are dense, and the pixel decides.
+const LARGEST_PAIRWISE: usize = 512;
+
+/// Smallest positive gap between two objects: exact for balls beside or inside each other, between
+/// bounding boxes for the rest (0, which is contact or overlap, does not count).
+pub fn smallest_gap(scene: &Scene) -> Option<f64> {
+    if scene.objects.len() > LARGEST_PAIRWISE {
+        return None;
+    }
+    let placed: Vec<_> = scene
+        .objects
+        .iter()
+        .filter_map(|o| {
+            let to_world = about_camera(scene, &o.value);
+            let bounds = bounds(&o.value.shape, &to_world)?;
+            Some((bounds, as_ball(&o.value, &to_world)))
+        })
+        .collect();
+    let mut smallest = f64::INFINITY;
+    for (i, (bounds, ball)) in placed.iter().enumerate() {
+        for (other_bounds, other_ball) in &placed[i + 1..] {
+            let gap = match (ball, other_ball) {
+                (Some((c1, r1)), Some((c2, r2))) => {
+                    let between = c1.distance(*c2);
+                    (between - r1 - r2).max((r1 - r2).abs() - between)
+                }
+                _ => bounds.gap(other_bounds),
+            };
+            if gap > 0.0 {
+                smallest = smallest.min(gap);
+            }
+        }
+    }
+    smallest.is_finite().then_some(smallest)
+}
+
+/// Bound on the error of a hit's position in arithmetic of unit roundoff `roundoff`, and the
+/// width of a pixel there, for the object where their ratio is worst; scene units.
+///
+/// A point goes to object coordinates and back: with |o| up to the scene's reach s, the local
+/// error E of `shape::lanes` times the row sums of the map, plus the rounding of the result.
+pub fn worst_error(
+    scene: &Scene,
+    roundoff: f64,
+    inverse_of: impl Fn(&Affine) -> Option<Affine>,
+) -> Error {
+    let reach = scene
+        .objects
+        .iter()
+        .filter_map(|o| bounds(&o.value.shape, &about_camera(scene, &o.value)))
+        .map(|b| b.reach())
+        .fold(0.0, f64::max);
+    let pixel = pixel_size(&scene.camera.projection, scene.image.size[1]);
+    let mut worst = Error {
+        position: 0.0,
+        pixel: f64::INFINITY,
+    };
+    for object in &scene.objects {
+        let to_world = about_camera(scene, &object.value);
+        let Some(inverse) = inverse_of(&to_world) else {
+            continue;
+        };
+        let row_sum = |m: &Affine| {
+            m.rows
+                .iter()
+                .map(|r| r[0].abs() + r[1].abs() + r[2].abs())
+                .fold(0.0, f64::max)
+        };
+        let offset = |m: &Affine| m.rows.iter().map(|r| r[3].abs()).fold(0.0, f64::max);
+        let local = 6.5 * roundoff * (row_sum(&inverse) * reach + offset(&inverse) + 1.0);
+        let position = local * row_sum(&to_world) + 4.0 * roundoff * (reach + offset(&to_world));
+        let distance = translation(&to_world).length();
+        let width = match scene.camera.projection {
+            Projection::Perspective { .. } => pixel * distance,
+            Projection::Orthographic { .. } => pixel,
+        };
+        if position * worst.pixel > worst.position * width || worst.pixel.is_infinite() {
+            worst = Error {
+                position: position.max(worst.position),
+                pixel: width,
+            };
+        }
+    }
+    worst
+}
+
+/// A position error beside the width of a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Error {
+    /// Bound on the error of a position, scene units.
+    pub position: f64,
+    /// Width of a pixel there, scene units.
+    pub pixel: f64,
+}

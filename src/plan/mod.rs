@@ -1,0 +1,73 @@
+//! The plan: what this scene needs, decided once, built once, and explained in words.
+//!
+//! [`needs`] reads what can happen off the scene; [`choose`] turns that and the user's wishes into
+//! decisions, in one table; [`build`] makes the flat tables of the loop; [`explain`] says why.
+
+pub mod build;
+pub mod choose;
+pub mod explain;
+pub mod extent;
+pub mod needs;
+
+use crate::integrate::develop::Spectrometer;
+use crate::integrate::model::Model;
+use crate::scene::Scene;
+use choose::Choices;
+
+/// A scene ready to render.
+#[derive(Debug)]
+pub struct Plan {
+    /// The decisions.
+    pub choices: Choices,
+    /// The tables, in the chosen precision.
+    pub tables: Tables,
+    /// Names of lights that unidirectional paths cannot carry everywhere, with the reason.
+    pub left_out: Vec<String>,
+}
+
+/// Tables of the loop in one precision.
+#[derive(Debug)]
+pub enum Tables {
+    /// Single precision.
+    Single(Box<(Model<f32>, Spectrometer<f32>)>),
+    /// Double precision.
+    Double(Box<(Model<f64>, Spectrometer<f64>)>),
+}
+
+/// Why a valid scene cannot be planned.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PlanError {
+    /// A transform that is invertible on paper but not in the range of f64.
+    #[error(
+        "object \"{name}\": its transform cannot be inverted in double precision about the camera"
+    )]
+    NotInvertible {
+        /// The object's name.
+        name: String,
+    },
+    /// More wavelengths than the loop is compiled for.
+    #[error("{count} wavelengths per path: the loop is built for 4 and 8")]
+    Wavelengths {
+        /// What was asked for.
+        count: u32,
+    },
+}
+
+impl Plan {
+    /// Plans a scene; `full` switches on everything that could be left out.
+    ///
+    /// # Errors
+    /// [`PlanError`] where the scene cannot be carried out.
+    pub fn new(scene: &Scene, full: bool) -> Result<Self, PlanError> {
+        let choices = choose::choose(scene, full)?;
+        let tables = match choices.precision {
+            choose::Precision::Single => Tables::Single(Box::new(build::build(scene, &choices)?)),
+            choose::Precision::Double => Tables::Double(Box::new(build::build(scene, &choices)?)),
+        };
+        Ok(Self {
+            choices,
+            tables,
+            left_out: needs::left_out(scene),
+        })
+    }
+}

@@ -1,0 +1,73 @@
+//! What can happen in a scene.
+
+use crate::integrate::model::Needs;
+use crate::scene::{Light, Material, Scene, Shape, Surface};
+
+/// Materials that some object wears.
+fn worn(scene: &Scene) -> impl Iterator<Item = &Material> {
+    scene
+        .objects
+        .iter()
+        .map(|object| &scene.materials[object.value.material].value)
+}
+
+/// Reads the needs off the objects that exist; what is only defined needs nothing.
+pub fn needs(scene: &Scene) -> Needs {
+    let some = |f: &dyn Fn(&Material) -> bool| worn(scene).any(f);
+    let surface = |f: fn(&Surface) -> bool| some(&|m: &Material| f(&m.surface));
+    Needs {
+        diffuse: surface(|s| matches!(s, Surface::Diffuse(_) | Surface::Checkerboard { .. })),
+        conductor: surface(|s| matches!(s, Surface::Conductor(_))),
+        ideal_mirror: surface(|s| matches!(s, Surface::IdealMirror(_))),
+        glass: surface(|s| matches!(s, Surface::Glass(_))),
+        dispersion: surface(|s| matches!(s, Surface::Glass(ior) if ior.disperses())),
+        emission: some(&|m| m.emission.is_some()),
+        lens: scene.camera.lens.is_some(),
+        implicit: scene
+            .objects
+            .iter()
+            .any(|o| matches!(o.value.shape, Shape::Implicit(_))),
+        checker: surface(|s| matches!(s, Surface::Checkerboard { .. })),
+    }
+}
+
+/// Everything switched on, whether it can happen or not.
+pub fn everything() -> Needs {
+    Needs {
+        diffuse: true,
+        conductor: true,
+        ideal_mirror: true,
+        glass: true,
+        dispersion: true,
+        emission: true,
+        lens: true,
+        implicit: true,
+        checker: true,
+    }
+}
+
+/// Light that paths from the camera can never find: point or directional light that reaches a
+/// surface, or the camera, by way of a mirror or through glass.
+pub fn left_out(scene: &Scene) -> Vec<String> {
+    let specular = worn(scene).any(|m| {
+        matches!(
+            m.surface,
+            Surface::Conductor(_) | Surface::IdealMirror(_) | Surface::Glass(_)
+        )
+    });
+    if !specular {
+        return Vec::new();
+    }
+    scene
+        .lights
+        .iter()
+        .enumerate()
+        .map(|(i, light)| {
+            let kind = match light {
+                Light::Point { .. } => "point",
+                Light::Directional { .. } => "directional",
+            };
+            format!("{kind} light {i} by way of mirrors and glass")
+        })
+        .collect()
+}

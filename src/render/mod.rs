@@ -1,0 +1,7 @@
+//! A render: tiles over threads, passes over the whole image, and when to stop.
+
+pub mod pass;
+pub mod session;
+pub mod tile;
+
+pub use session::{Progress, Rendered, Request, render};

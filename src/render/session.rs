@@ -1,0 +1,206 @@
+//! From plan to picture: passes until enough, and what was measured on the way.
+
+use std::time::{Duration, Instant};
+
+use super::pass;
+use super::tile::{Instructions, Tile, Window};
+use crate::film::pixels::{Estimate, to_rgb};
+use crate::integrate::chunk;
+use crate::integrate::intersect::Rungs;
+use crate::plan::Plan;
+
+/// What to render besides what the plan says.
+#[derive(Debug, Clone, Copy)]
+pub struct Request {
+    /// The pixels wanted; coordinates are those of the whole image.
+    pub window: Window,
+    /// Samples a pixel at most.
+    pub samples: u32,
+    /// Wall-clock time after which no further pass begins.
+    pub time: Option<Duration>,
+    /// Instruction set.
+    pub instructions: Instructions,
+}
+
+/// What a render tells while it runs, between passes; returning `false` stops it.
+pub trait Progress {
+    /// Called after each pass with the samples done, the samples wanted, the time spent and the
+    /// standard error of the mean luminance relative to it, where known.
+    fn passed(&mut self, done: u32, wanted: u32, spent: Duration, error: Option<f64>) -> bool;
+}
+
+/// A finished render.
+#[derive(Debug, Clone)]
+pub struct Rendered {
+    /// The pixels that were rendered.
+    pub window: Window,
+    /// Samples a pixel.
+    pub samples: u32,
+    /// Seconds in passes.
+    pub seconds: f64,
+    /// Which arithmetic decided the rays.
+    pub rungs: Rungs,
+    /// Samples left out because they were not numbers.
+    pub not_a_number: u64,
+    /// The first of them, to be replayed.
+    pub first_not_a_number: Option<chunk::Request>,
+    tiles: Vec<Tile>,
+}
+
+/// A share with its standard error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Share {
+    /// The estimate.
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+}
+
+/// Renders. Passes are over the whole window and their sizes are fixed before they begin, so that
+/// stopping between them favours no sample.
+pub fn render(plan: &Plan, request: &Request, progress: &mut dyn Progress) -> Rendered {
+    let start = Instant::now();
+    let mut rendered = Rendered {
+        window: request.window,
+        samples: 0,
+        seconds: 0.0,
+        rungs: Rungs::default(),
+        not_a_number: 0,
+        first_not_a_number: None,
+        tiles: request
+            .window
+            .tiles()
+            .into_iter()
+            .map(|window| Tile::new(window, plan.choices.replicates))
+            .collect(),
+    };
+    while rendered.samples < request.samples {
+        let size = next_pass(&rendered, request, start.elapsed());
+        let (from, to) = (rendered.samples, rendered.samples + size);
+        pass::run(plan, request.instructions, &mut rendered.tiles, from, to);
+        rendered.samples = to;
+        rendered.seconds = start.elapsed().as_secs_f64();
+        let goes_on = progress.passed(
+            to,
+            request.samples,
+            start.elapsed(),
+            rendered.mean_luminance().relative_error(),
+        );
+        let late = request.time.is_some_and(|time| start.elapsed() >= time);
+        if !goes_on || late {
+            break;
+        }
+    }
+    for tile in &rendered.tiles {
+        rendered.rungs = rendered.rungs.joined(tile.rungs);
+        rendered.not_a_number += tile.not_a_number;
+        rendered.first_not_a_number = rendered.first_not_a_number.or(tile.first_not_a_number);
+    }
+    rendered
+}
+
+/// Longest a pass should take, seconds, so that stopping is never far away.
+const LONGEST_PASS: f64 = 2.0;
+/// Samples of the first pass, before the speed is known.
+const FIRST_PASS: u32 = 4;
+
+/// Samples of the next pass: from the speed so far, as many as [`LONGEST_PASS`] and the time left
+/// allow, at most as many as there are already (so that sizes double), at least one.
+fn next_pass(rendered: &Rendered, request: &Request, spent: Duration) -> u32 {
+    let left = request.samples - rendered.samples;
+    if rendered.samples == 0 {
+        return left.min(FIRST_PASS);
+    }
+    let rate = f64::from(rendered.samples) / rendered.seconds.max(1e-9);
+    let seconds = match request.time {
+        Some(time) => time.saturating_sub(spent).as_secs_f64().min(LONGEST_PASS),
+        None => LONGEST_PASS,
+    };
+    let fitting = (rate * seconds) as u32;
+    fitting.clamp(1, 7 * rendered.samples).min(left)
+}
+
+/// Mean luminance of a picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeanLuminance {
+    /// Y.
+    pub value: f64,
+    /// Standard error; NaN with a single replicate.
+    pub standard_error: f64,
+}
+
+impl MeanLuminance {
+    /// Standard error over value, where it is known.
+    pub fn relative_error(&self) -> Option<f64> {
+        let ratio = self.standard_error / self.value;
+        ratio.is_finite().then_some(ratio)
+    }
+}
+
+impl Rendered {
+    /// Every pixel's estimate in linear Rec. 709, row by row.
+    pub fn rgb(&self) -> Vec<Estimate> {
+        self.estimates(to_rgb)
+    }
+
+    /// Every pixel's estimate in X, Y, Z, row by row.
+    pub fn xyz(&self) -> Vec<Estimate> {
+        self.estimates(|xyz| xyz)
+    }
+
+    fn estimates(&self, channels: impl Fn([f64; 3]) -> [f64; 3] + Copy) -> Vec<Estimate> {
+        let empty = Estimate {
+            mean: [0.0; 3],
+            standard_error: [f64::NAN; 3],
+        };
+        let mut image = vec![empty; self.window.pixels()];
+        let width = self.window.width() as usize;
+        for tile in &self.tiles {
+            let tile_width = tile.window.width() as usize;
+            for pixel in 0..tile.window.pixels() {
+                let x = (tile.window.x0 - self.window.x0) as usize + pixel % tile_width;
+                let y = (tile.window.y0 - self.window.y0) as usize + pixel / tile_width;
+                image[y * width + x] = tile.pixels.estimate(pixel, self.samples, channels);
+            }
+        }
+        image
+    }
+
+    /// Mean luminance; pixels are scrambled independently, so their squared standard errors add.
+    pub fn mean_luminance(&self) -> MeanLuminance {
+        let pixels = self.window.pixels() as f64;
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for estimate in self.xyz() {
+            sum += estimate.mean[1];
+            squares += estimate.standard_error[1] * estimate.standard_error[1];
+        }
+        MeanLuminance {
+            value: sum / pixels,
+            standard_error: squares.sqrt() / pixels,
+        }
+    }
+
+    /// Share of the luminance that `max_depth` cuts off.
+    pub fn cut_off(&self) -> Share {
+        let samples = self.window.pixels() as f64 * f64::from(self.samples);
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for tile in &self.tiles {
+            sum += tile.beyond.sum;
+            squares += tile.beyond.squares;
+        }
+        let mean = sum / samples;
+        let error = ((squares / samples - mean * mean).max(0.0) / samples).sqrt();
+        let whole = self.mean_luminance().value + mean;
+        if whole > 0.0 {
+            Share {
+                value: mean / whole,
+                standard_error: error / whole,
+            }
+        } else {
+            Share {
+                value: 0.0,
+                standard_error: 0.0,
+            }
+        }
+    }
+}

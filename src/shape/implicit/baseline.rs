@@ -1,0 +1,200 @@
+//! The report's own method for implicit surfaces, in scalar f64.
+//!
+//! Equal steps along the clipped ray, a change of sign, bisection. It proves nothing: roots that
+//! do not change the sign are missed, and so is a pair of roots within one step. It stays as the
+//! yardstick for certified finders.
+
+use glam::DVec3;
+
+use crate::math::affine::Affine;
+use crate::math::double_double::DoubleDouble;
+use crate::math::number::{Number, power_of_two};
+use crate::scene::{Implicit, ImplicitSurface};
+use crate::shape::ladder::{Ladder, ScaledRay};
+use crate::shape::{Query, SingularMatrix};
+
+/// The field at an object point, negative inside.
+pub fn field(surface: ImplicitSurface, p: DVec3) -> f64 {
+    let squared = p * p;
+    match surface {
+        ImplicitSurface::Heart => {
+            let s = squared.x + 2.25 * squared.y + squared.z - 1.0;
+            s * s * s - (squared.x + 9.0 / 80.0 * squared.y) * squared.z * p.z
+        }
+        ImplicitSurface::Mitchell => {
+            let (a, b) = (squared.x, squared.y + squared.z);
+            4.0 * (a * a + b * b) + 17.0 * a * b - 20.0 * (a + b) + 17.0
+        }
+    }
+}
+
+/// The field's gradient at an object point.
+pub fn gradient(surface: ImplicitSurface, p: DVec3) -> DVec3 {
+    let squared = p * p;
+    match surface {
+        ImplicitSurface::Heart => {
+            let s = squared.x + 2.25 * squared.y + squared.z - 1.0;
+            let (outer, cubed) = (6.0 * s * s, squared.z * p.z);
+            DVec3::new(
+                p.x * (outer - 2.0 * cubed),
+                p.y * (2.25 * outer - 9.0 / 40.0 * cubed),
+                p.z * outer - squared.z * (3.0 * squared.x + 27.0 / 80.0 * squared.y),
+            )
+        }
+        ImplicitSurface::Mitchell => {
+            let (a, b) = (squared.x, squared.y + squared.z);
+            let along = 16.0 * a + 34.0 * b - 40.0;
+            let across = 16.0 * b + 34.0 * a - 40.0;
+            p * DVec3::new(along, across, across)
+        }
+    }
+}
+
+/// An implicit surface placed in the world.
+#[derive(Debug, Clone)]
+pub struct PlacedImplicit {
+    implicit: Implicit,
+    ladder: Ladder,
+}
+
+/// Where a ray meets an implicit surface, as far as the baseline finder can tell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ImplicitHit {
+    /// Where on the ray, in units of its direction; finite.
+    pub t: f64,
+    /// World coordinates.
+    pub point: DVec3,
+    /// Unit outward normal in the world; `None` where the gradient vanishes.
+    pub normal: Option<DVec3>,
+}
+
+/// A line in object coordinates.
+#[derive(Clone, Copy)]
+struct Line {
+    origin: DVec3,
+    direction: DVec3,
+}
+
+impl Line {
+    fn at(&self, t: f64) -> DVec3 {
+        self.origin + self.direction * t
+    }
+}
+
+impl PlacedImplicit {
+    /// Places the surface.
+    ///
+    /// # Errors
+    /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
+    pub fn new(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
+        Ok(Self {
+            implicit: implicit.clone(),
+            ladder: Ladder::new(to_world)?,
+        })
+    }
+
+    /// The first zero of the field, or change of its sign between two steps, with `t_min` < t <
+    /// `t_max` inside the clip box; t = 0 counts where `t_min` is 0.
+    pub fn first_hit(&self, query: &Query) -> Option<ImplicitHit> {
+        if !query.ray.is_valid() {
+            return None;
+        }
+        let ray = ScaledRay::new(&query.ray);
+        let line = self.local(&ray);
+        // t is counted in units of the scaled direction, whose largest component is near 1.
+        let unit = power_of_two(ray.exponent());
+        let limits = [query.t_min * unit, query.t_max * unit];
+        let scaled_t = self.first_root(&line, limits, query.t_min == 0.0)?;
+        let t = scaled_t / unit;
+        let normal = self.normal(line.at(scaled_t));
+        let point = query.ray.origin + query.ray.direction * t;
+        (t.is_finite() && point.is_finite()).then_some(ImplicitHit { t, point, normal })
+    }
+
+    /// The ray in object coordinates, rounded once from double-double.
+    fn local(&self, ray: &ScaledRay) -> Line {
+        let line = self.ladder.double_double.local(ray);
+        let divided = |v: &[DoubleDouble; 3]| {
+            DVec3::from_array(v.each_ref().map(|x| x.divided_by(&line.scale).to_f64()))
+        };
+        Line {
+            origin: divided(&line.origin),
+            direction: divided(&line.direction),
+        }
+    }
+
+    fn first_root(&self, line: &Line, limits: [f64; 2], from_zero: bool) -> Option<f64> {
+        let [t_min, t_max] = limits;
+        let [near, far] = self.clip(line, limits)?;
+        let value = |t: f64| field(self.implicit.surface, line.at(t));
+        let first = value(near);
+        if first == 0.0 && (near > t_min || from_zero) {
+            return (near < t_max).then_some(near);
+        }
+        let negative = first < 0.0;
+        let step = (far - near) / f64::from(self.implicit.steps);
+        let mut low = near;
+        for i in 1..=self.implicit.steps {
+            let high = if i == self.implicit.steps {
+                far
+            } else {
+                near + step * f64::from(i)
+            };
+            if (value(high) < 0.0) != negative {
+                let t = bisect(value, low, high, negative);
+                return (t > t_min && t < t_max).then_some(t);
+            }
+            low = high;
+        }
+        None
+    }
+
+    /// The part of the line within the closed clip box and the limits.
+    fn clip(&self, line: &Line, [mut near, mut far]: [f64; 2]) -> Option<[f64; 2]> {
+        let [lower, upper] = self.implicit.inside;
+        for axis in 0..3 {
+            let (o, d) = (line.origin[axis], line.direction[axis]);
+            if d == 0.0 {
+                if o < lower[axis] || o > upper[axis] {
+                    return None;
+                }
+                continue;
+            }
+            let (t1, t2) = ((lower[axis] - o) / d, (upper[axis] - o) / d);
+            near = near.max(t1.min(t2));
+            far = far.min(t1.max(t2));
+        }
+        (near <= far && near.is_finite() && far.is_finite()).then_some([near, far])
+    }
+
+    /// Normals go by the inverse transpose; the adjugate has the sign that keeps them outward.
+    fn normal(&self, point: DVec3) -> Option<DVec3> {
+        let gradient = gradient(self.implicit.surface, point);
+        let rows = self.ladder.double_double.adjugate.each_ref();
+        let rows = rows.map(|row| DVec3::from_array(row.each_ref().map(Number::to_f64)));
+        let normal = rows[0] * gradient.x + rows[1] * gradient.y + rows[2] * gradient.z;
+        // The squares of very short or long normals would leave the range of f64.
+        (normal / normal.abs().max_element()).try_normalize()
+    }
+}
+
+/// Halves the bracket until no f64 lies between its ends; of these, the one with the smaller
+/// |field|. The sign is `negative` at `low` and not at `high`.
+fn bisect(value: impl Fn(f64) -> f64, mut low: f64, mut high: f64, negative: bool) -> f64 {
+    loop {
+        let middle = low + (high - low) / 2.0;
+        if middle <= low || middle >= high {
+            break;
+        }
+        if (value(middle) < 0.0) == negative {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    if value(low).abs() < value(high).abs() {
+        low
+    } else {
+        high
+    }
+}

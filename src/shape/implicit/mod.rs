@@ -1,0 +1,3 @@
+//! Implicit surfaces in f64, one ray at a time.
+
+pub mod baseline;
