@@ -16,8 +16,7 @@ def etalon_pictures(path, image, arguments, folder):
     pictures = []
     for seed in range(FIRST_SEED, FIRST_SEED + arguments.replicates):
         output = folder / "replicate.exr"
-        options = image | {"spp": arguments.spp, "seed": seed, "wavelengths": arguments.wavelengths}
-        etalon.render(path, output, threads=arguments.threads, **options)
+        etalon.render(path, output, arguments, **image | {"spp": arguments.spp, "seed": seed})
         pictures.append(etalon.read_xyz(output))
     return np.array(pictures)
 

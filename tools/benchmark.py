@@ -7,16 +7,18 @@
 
 Same size, paths per pixel, depth, box filter and number of threads on both sides. Speed: both are
 timed warm at the paths per pixel asked for and at 1, alternating, and the times subtracted, so that
-start-up, compilation and the writing of files count on neither side.
+start-up, compilation and the writing of files count on neither side. The ratio of rates by processor
+time is there because other work on the machine disturbs it less.
 """
 
 import argparse
-import statistics
 import sys
 import tempfile
 import time
 import warnings
 from pathlib import Path
+
+import numpy as np
 
 import agreement
 import convergence
@@ -36,11 +38,10 @@ def scaled_size(size, pixels):
 
 
 def etalon_seconds(path, image, arguments, folder):
-    """Wall-clock seconds of a render without its start-up."""
+    """Seconds of a render without its start-up: by the clock, and of the processors together."""
 
     def seconds(spp):
-        options = image | {"spp": spp, "wavelengths": arguments.wavelengths}
-        return etalon.render(path, folder / "speed.exr", threads=arguments.threads, **options)
+        return etalon.render(path, folder / "speed.exr", arguments, **image | {"spp": spp})
 
     return seconds(image["spp"]) - seconds(1)
 
@@ -56,12 +57,12 @@ class MitsubaTimer:
             mitsuba_scene.render(scene)
 
     def seconds(self, seed):
-        """Wall-clock seconds of a render without its start-up."""
+        """As [`etalon_seconds`]."""
         times = []
         for scene in self.scenes:
-            start = time.perf_counter()
+            start = np.array([time.perf_counter(), time.process_time()])
             mitsuba_scene.render(scene, seed)
-            times.append(time.perf_counter() - start)
+            times.append([time.perf_counter(), time.process_time()] - start)
         return times[0] - times[1]
 
     def spp(self):
@@ -82,11 +83,11 @@ def speed_row(path, samplers, arguments, folder):
         paths = pixels * (arguments.spp - 1)
         ours.append(paths / etalon_seconds(path, image | {"sampler": samplers[0], "seed": seed}, arguments, folder))
         theirs.append(pixels * (timer.spp() - 1) / timer.seconds(seed))
-    ratios = [a / b for a, b in zip(ours, theirs, strict=True)]
+    ours, theirs = np.array(ours), np.array(theirs)
     width, height = image["size"]
-    rates = [f"{statistics.median(rate) / 1e6:.2f}" for rate in (ours, theirs)]
-    spread = " / ".join(f"{value:.1f}" for value in (min(ratios), statistics.median(ratios), max(ratios)))
-    cells = [path.stem, f"{width}×{height}", str(depth or "∞"), " / ".join(samplers), *rates, spread]
+    rates = [f"{rate / 1e6:.2f}" for rate in (np.median(ours[:, 0]), np.median(theirs[:, 0]))]
+    spreads = [f"{np.min(r):.2f} / {np.median(r):.2f} / {np.max(r):.2f}" for r in (ours / theirs).T]
+    cells = [path.stem, f"{width}×{height}", str(depth or "∞"), " / ".join(samplers), *rates, *spreads]
     return "| " + " | ".join(cells) + " |"
 
 
@@ -97,7 +98,7 @@ def speed(paths, arguments, folder):
     print(f"{arguments.rounds} alternating rounds. Wavelengths a path: etalon {wavelengths}, Mitsuba 4.")
     print(f"Mitsuba {mitsuba_scene.mi.__version__} {arguments.variant}, Russian roulette at its own default depth.\n")
     columns = ["scene", "size", "depth", "samplers (etalon / Mitsuba)", "etalon, 10⁶/s", "Mitsuba, 10⁶/s"]
-    columns.append("ratio min / median / max")
+    columns += ["ratio min / median / max", "the same by processor time"]
     print("| " + " | ".join(columns) + " |\n|" + "---|" * len(columns))
     for path in paths:
         for samplers in SAMPLERS:
@@ -121,6 +122,7 @@ def parse_arguments():
     parser.add_argument("--replicates", type=int, default=8, help="pictures of a reference (default: %(default)s)")
     parser.add_argument("--wavelengths", type=int, choices=[4, 8], help="per path, for etalon")
     parser.add_argument("--threads", type=int, default=2, help="for each side (default: %(default)s)")
+    parser.add_argument("--binary", type=Path, default=etalon.BINARY)
     parser.add_argument("--variant", default=mitsuba_scene.DEFAULT_VARIANT)
     arguments = parser.parse_args()
     is_speed = not (arguments.convergence or arguments.agreement)

@@ -42,7 +42,7 @@ def pictures(path, image, spp, arguments, folder):
     output = folder / "picture.exr"
     for seed in range(1, PICTURES + 1):
         options = image | {"spp": spp, "seed": seed, "sampler": "sobol", "replicates": 1}
-        etalon.render(path, output, threads=arguments.threads, wavelengths=arguments.wavelengths, **options)
+        etalon.render(path, output, arguments, **options)
         yield "etalon sobol", etalon.read_xyz(output)
     for sampler in ("multijitter", "independent"):
         scene = mitsuba_scene.load(path, image=image | {"spp": spp}, sampler=sampler)
