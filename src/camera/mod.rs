@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::math::lanes::{Lanes, Scalar};
+use crate::math::lanes::{Lanes, Scalar, inlined};
 use crate::math::vec3::Vec3;
 use crate::sample::sequence::CameraSample;
 use crate::sample::warp::square_to_disk;
@@ -69,10 +69,13 @@ impl<T: Scalar> LaneCamera<T> {
         y: L::Int,
         sample: &CameraSample<L>,
     ) -> (Vec3<L::Real>, Vec3<L::Real>) {
-        let axis = |i: usize| {
-            let [x, y, z] = self.axes[i];
-            Vec3::new(l.splat(x), l.splat(y), l.splat(z))
-        };
+        let axis = inlined(
+            #[inline(always)]
+            |i: usize| {
+                let [x, y, z] = self.axes[i];
+                Vec3::new(l.splat(x), l.splat(y), l.splat(z))
+            },
+        );
         let (right, up, forward) = (axis(0), axis(1), axis(2));
         let size = l.splat(self.pixel_size);
         let [u, v] = sample.pixel;

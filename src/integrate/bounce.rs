@@ -1,11 +1,14 @@
 //! One segment of every path: find the surface, take its light, sample the lights, scatter.
 
-use super::intersect::{Leaving, NOTHING, Rungs, nearest, occluded};
+use super::chunk::CHUNK;
+use super::intersect::{Leaving, NOTHING, Rungs, Shadow, nearest, occluded};
 use super::model::{Model, Scatter};
-use super::pool::{IntField, Pool, RealField, Results, SpectralField, any, bit_where, flags, has};
+use super::pool::{
+    IntField, Pool, RealField, Rows, WIDEST, any, array, bit_where, each, flags, has, int_array,
+};
 use super::surface::{Arrival, Surfaces, surfaces};
 use crate::material::fresnel;
-use crate::math::lanes::{Int, Lanes, Mask, Real};
+use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
 use crate::math::vec3::Vec3;
 use crate::sample::Slot;
 use crate::sample::mis::power_weight;
@@ -22,10 +25,14 @@ const LARGEST_SURVIVAL: f64 = 0.95;
 pub const BEYOND_SHARE: f64 = 1.0 / 16.0;
 
 /// A packet of paths on its way through the step.
-struct Step<L: Lanes, const C: usize> {
-    throughput: [L::Real; C],
-    radiance: [L::Real; C],
-    position: [L::Real; C],
+struct Step<'a, L: Lanes, const C: usize> {
+    model: &'a Model<L::Scalar>,
+    rows: &'a mut Rows<L::Scalar, C>,
+    rungs: &'a mut Rungs,
+    /// Numbers of the rows by lane.
+    slots: [u32; WIDEST],
+    /// Largest throughput by lane, over the wavelengths.
+    largest: [L::Scalar; WIDEST],
     flags: L::Int,
     depth: L::Int,
     id: Identity<L>,
@@ -41,31 +48,28 @@ struct Scattered<L: Lanes> {
 
 /// Advances the packet at `at` by one segment and returns which of its lanes go on.
 #[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "the parts of one worker's state")]
 pub fn bounce<L: Lanes, const C: usize>(
     l: L,
     model: &Model<L::Scalar>,
-    pool: &mut Pool<L::Scalar, C>,
-    results: &mut Results<L::Scalar, C>,
+    pool: &mut Pool<L::Scalar>,
+    rows: &mut Rows<L::Scalar, C>,
+    beyond_slots: &mut Vec<u32>,
     at: usize,
     active: u32,
     rungs: &mut Rungs,
 ) -> u32 {
     let active = l.mask_from_bits(active);
-    let vector = |pool: &Pool<L::Scalar, C>, field| {
-        Vec3::new(
-            pool.real(l, field, 0, at),
-            pool.real(l, field, 1, at),
-            pool.real(l, field, 2, at),
-        )
-    };
     let ray = LaneRay::<L>::new(
-        vector(pool, RealField::Origin),
-        vector(pool, RealField::Direction),
+        vector(l, pool, RealField::Origin, at),
+        vector(l, pool, RealField::Direction, at),
     );
     let mut step = Step::<L, C> {
-        throughput: pool.spectral(l, SpectralField::Throughput, at),
-        radiance: pool.spectral(l, SpectralField::Radiance, at),
-        position: pool.spectral(l, SpectralField::Position, at),
+        model,
+        rows,
+        rungs,
+        slots: int_array(l, pool.int(l, IntField::Slot, at)),
+        largest: [L::Scalar::from_f64(1.0); WIDEST],
         flags: pool.int(l, IntField::Flags, at),
         depth: pool.int(l, IntField::Depth, at),
         id: Identity {
@@ -78,27 +82,18 @@ pub fn bounce<L: Lanes, const C: usize>(
         inward: has(l, step.flags, flags::INWARD),
     };
 
-    let found = nearest(l, model, &ray, &leaving, active, rungs);
+    let found = nearest(l, model, &ray, &leaving, active, step.rungs);
     let hit = active & !found.object.same(l.int(NOTHING));
-    let escaped = active & !hit;
-    if let Some(environment) = model.environment
-        && any(escaped)
-    {
-        step.add(l, model, escaped, l.int(environment), l.real(1.0));
+    if let Some(environment) = model.environment {
+        step.add(l, active & !hit, l.int(environment), l.real(1.0));
     }
     let arrival = Arrival {
         pdf: pool.real(l, RealField::Pdf, 0, at),
         specular: has(l, step.flags, flags::SPECULAR),
     };
     let surface = surfaces(l, model, &ray, &found, &arrival, hit);
-    if model.needs.emission && any(surface.emits) {
-        step.add(
-            l,
-            model,
-            surface.emits,
-            surface.emission,
-            surface.emission_weight,
-        );
+    if model.needs.emission {
+        step.add(l, surface.emits, surface.emission, surface.emission_weight);
     }
 
     let scatters = hit & !surface.scatter.same(l.int(Scatter::Black as u32));
@@ -107,84 +102,121 @@ pub fn bounce<L: Lanes, const C: usize>(
     let mut going = scatters & (within | beyond);
     let cut = scatters & !going;
     if any(cut) {
-        let u = model
-            .sequence
-            .single(l, step.id, Slot::Beyond.at(l, step.depth));
+        let slot = Slot::Beyond.at(l, step.depth);
+        let u = model.sequence.single(l, step.id, slot);
         let chosen = cut & u.lt(l.real(BEYOND_SHARE));
-        if any(chosen) {
-            step.go_beyond(l, pool, results, at, chosen);
-            going = going | chosen;
-        }
+        step.go_beyond(l, chosen, beyond_slots);
+        going = going | chosen;
     }
 
-    let next = step.scatter(l, model, &ray, &surface, &found.object, going, rungs);
-    let alive = step.roulette(l, model, going);
+    let next = step.scatter(l, &ray, &surface, found.object, going);
+    let alive = step.roulette(l, going);
 
-    let keep = flags::TERMINATED | flags::BEYOND;
-    step.flags = (step.flags & l.int(keep))
+    let kept = step.flags & l.int(flags::TERMINATED | flags::BEYOND);
+    let flags = kept
         | bit_where(l, next.inward, flags::INWARD)
         | bit_where(l, next.specular, flags::SPECULAR);
-    step.depth = step.depth.plus(l.int(1));
-    let vectors = [
-        (RealField::Origin, surface.point),
-        (RealField::Direction, next.direction),
-    ];
-    for (field, v) in vectors {
-        pool.set_real(l, field, 0, at, v.x);
-        pool.set_real(l, field, 1, at, v.y);
-        pool.set_real(l, field, 2, at, v.z);
-    }
+    let slots = l.load_int(&step.slots);
+    let depth = step.depth.plus(l.int(1));
+    set_vector(l, pool, RealField::Origin, at, surface.point);
+    set_vector(l, pool, RealField::Direction, at, next.direction);
     pool.set_real(l, RealField::Pdf, 0, at, next.pdf);
-    pool.set_spectral(l, SpectralField::Throughput, at, step.throughput);
-    pool.set_spectral(l, SpectralField::Radiance, at, step.radiance);
     pool.set_int(l, IntField::Departure, at, found.object);
-    pool.set_int(l, IntField::Flags, at, step.flags);
-    pool.set_int(l, IntField::Depth, at, step.depth);
+    pool.set_int(l, IntField::Flags, at, flags);
+    pool.set_int(l, IntField::Depth, at, depth);
+    pool.set_int(l, IntField::Slot, at, slots);
     alive.bits()
 }
 
-impl<L: Lanes, const C: usize> Step<L, C> {
-    /// Adds `weight` times a spectrum to the radiance where the mask is true.
+#[inline(always)]
+fn vector<L: Lanes>(l: L, pool: &Pool<L::Scalar>, field: RealField, at: usize) -> Vec3<L::Real> {
+    Vec3::new(
+        pool.real(l, field, 0, at),
+        pool.real(l, field, 1, at),
+        pool.real(l, field, 2, at),
+    )
+}
+
+#[inline(always)]
+fn set_vector<L: Lanes>(
+    l: L,
+    pool: &mut Pool<L::Scalar>,
+    field: RealField,
+    at: usize,
+    v: Vec3<L::Real>,
+) {
+    pool.set_real(l, field, 0, at, v.x);
+    pool.set_real(l, field, 1, at, v.y);
+    pool.set_real(l, field, 2, at, v.z);
+}
+
+impl<L: Lanes, const C: usize> Step<'_, L, C> {
+    /// Adds throughput × weight × spectrum to the radiance where the mask is true.
     #[inline(always)]
-    fn add(
-        &mut self,
-        l: L,
-        model: &Model<L::Scalar>,
-        m: L::Mask,
-        spectrum: L::Int,
-        weight: L::Real,
-    ) {
-        let weight = l.select(m, weight, l.real(0.0));
-        for j in 0..C {
-            let value = model.spectra.mean(l, spectrum, self.position[j]);
-            self.radiance[j] = (self.throughput[j] * weight).mul_add(value, self.radiance[j]);
+    fn add(&mut self, l: L, m: L::Mask, spectrum: L::Int, weight: L::Real) {
+        let bits = m.bits();
+        if bits == 0 {
+            return;
+        }
+        let (spectra, weights) = (int_array(l, spectrum), array(l, weight));
+        for i in each(bits) {
+            let slot = self.slots[i] as usize;
+            // Copies: arrays that cannot overlap become vectors.
+            let values = *self.model.spectra.row::<C>(spectra[i], self.rows.row[slot]);
+            let throughput = self.rows.throughput[slot];
+            let mut radiance = self.rows.radiance[slot];
+            let weight = weights[i];
+            for c in 0..C {
+                radiance[c] = (throughput[c] * weight).fused(values[c], radiance[c]);
+            }
+            self.rows.radiance[slot] = radiance;
         }
     }
 
-    /// Delivers the radiance of paths at `max_depth` and lets them go on for the cut-off estimate.
+    /// Multiplies a lane's throughput by a spectrum of factors.
     #[inline(always)]
-    fn go_beyond(
-        &mut self,
-        l: L,
-        pool: &Pool<L::Scalar, C>,
-        results: &mut Results<L::Scalar, C>,
-        at: usize,
-        chosen: L::Mask,
-    ) {
-        let mut bits = chosen.bits();
-        while bits != 0 {
-            let i = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            let slot = pool.int_of(IntField::Slot, at + i) as usize;
-            for j in 0..C {
-                results.radiance[j * results.capacity + slot] = l.lane(self.radiance[j], i);
-            }
+    fn multiply(&mut self, i: usize, factors: &[L::Scalar; C]) {
+        let slot = self.slots[i] as usize;
+        let mut throughput = self.rows.throughput[slot];
+        for c in 0..C {
+            throughput[c] = throughput[c] * factors[c];
         }
-        let zero = l.real(0.0);
-        for j in 0..C {
-            self.radiance[j] = l.select(chosen, zero, self.radiance[j]);
-            let weighted = self.throughput[j] * l.real(1.0 / BEYOND_SHARE);
-            self.throughput[j] = l.select(chosen, weighted, self.throughput[j]);
+        self.rows.throughput[slot] = throughput;
+        let mut width = C / 2;
+        while width > 0 {
+            for c in 0..width {
+                throughput[c] = throughput[c].larger(throughput[c + width]);
+            }
+            width /= 2;
+        }
+        self.largest[i] = throughput[0];
+    }
+
+    /// A lane's row of a spectrum.
+    #[inline(always)]
+    fn values(&self, i: usize, spectrum: u32) -> [L::Scalar; C] {
+        let row = self.rows.row[self.slots[i] as usize];
+        *self.model.spectra.row::<C>(spectrum, row)
+    }
+
+    /// Lets paths at `max_depth` go on in rows of their own, for the cut-off estimate.
+    #[inline(always)]
+    fn go_beyond(&mut self, l: L, chosen: L::Mask, beyond_slots: &mut Vec<u32>) {
+        for i in each(chosen.bits()) {
+            let slot = self.slots[i] as usize;
+            let own = slot + CHUNK;
+            let weight = L::Scalar::from_f64(1.0 / BEYOND_SHARE);
+            let rows = &mut *self.rows;
+            rows.throughput[own] = rows.throughput[slot];
+            for value in &mut rows.throughput[own] {
+                *value = *value * weight;
+            }
+            rows.radiance[own] = [L::Scalar::default(); C];
+            rows.row[own] = rows.row[slot];
+            rows.hero[own] = rows.hero[slot];
+            rows.fraction[own] = rows.fraction[slot];
+            self.slots[i] = own as u32;
+            beyond_slots.push(own as u32);
         }
         self.flags = self.flags | bit_where(l, chosen, flags::BEYOND);
     }
@@ -194,81 +226,90 @@ impl<L: Lanes, const C: usize> Step<L, C> {
     fn scatter(
         &mut self,
         l: L,
-        model: &Model<L::Scalar>,
         ray: &LaneRay<L>,
         surface: &Surfaces<L>,
-        object: &L::Int,
+        object: L::Int,
         going: L::Mask,
-        rungs: &mut Rungs,
     ) -> Scattered<L> {
-        let zero = l.real(0.0);
+        let needs = self.model.needs;
         let mut next = Scattered {
             direction: ray.direction,
-            pdf: zero,
+            pdf: l.real(0.0),
             specular: l.mask(true),
             // Reflection stays on the side it came from.
             inward: !surface.front,
         };
-        let kind = |scatter: Scatter| going & surface.scatter.same(l.int(scatter as u32));
-        if model.needs.diffuse {
+        let kind = inlined(
+            #[inline(always)]
+            |scatter: Scatter| going & surface.scatter.same(l.int(scatter as u32)),
+        );
+        if needs.diffuse {
             let diffuse = kind(Scatter::Diffuse);
             if any(diffuse) {
-                self.diffuse(l, model, surface, object, diffuse, &mut next, rungs);
+                self.diffuse(l, surface, object, diffuse, &mut next);
             }
         }
-        if model.needs.conductor || model.needs.ideal_mirror || model.needs.glass {
-            let facing = Vec3::select(l, surface.front, surface.normal, -surface.normal);
-            let cosine = (-ray.direction.dot(facing)).max(zero).min(l.real(1.0));
-            let mirrored = ray.direction.along(facing, cosine + cosine);
-            if model.needs.conductor {
-                let conductor = kind(Scatter::Conductor);
-                if any(conductor) {
-                    for j in 0..C {
-                        let n = model.spectra.mean(l, surface.spectrum, self.position[j]);
-                        let k = model.spectra.mean(l, surface.extinction, self.position[j]);
-                        let r = fresnel::conductor(l, cosine, n, k);
-                        self.scale(l, conductor, j, r);
-                    }
-                    next.direction = Vec3::select(l, conductor, mirrored, next.direction);
-                }
-            }
-            if model.needs.ideal_mirror {
-                let mirror = kind(Scatter::IdealMirror);
-                if any(mirror) {
-                    for j in 0..C {
-                        let r = model.spectra.mean(l, surface.spectrum, self.position[j]);
-                        self.scale(l, mirror, j, r);
-                    }
-                    next.direction = Vec3::select(l, mirror, mirrored, next.direction);
-                }
-            }
-            if model.needs.glass {
-                let glass = kind(Scatter::Glass);
-                if any(glass) {
-                    self.glass(
-                        l,
-                        model,
-                        surface,
-                        glass,
-                        (ray.direction, facing, cosine, mirrored),
-                        &mut next,
-                    );
-                }
-            }
-            // One Newton step keeps mirrored and refracted directions unit however many there are.
-            let correction = next
-                .direction
-                .length_squared()
-                .mul_add(l.real(-0.5), l.real(1.5));
-            let corrected = next.direction.scale(correction);
-            next.direction = Vec3::select(l, next.specular, corrected, next.direction);
+        if !(needs.conductor || needs.ideal_mirror || needs.glass) {
+            return next;
         }
+        let facing = Vec3::select(l, surface.front, surface.normal, -surface.normal);
+        let cosine = (-ray.direction.dot(facing))
+            .max(l.real(0.0))
+            .min(l.real(1.0));
+        let mirrored = ray.direction.along(facing, cosine + cosine);
+        if needs.conductor {
+            let conductor = kind(Scatter::Conductor);
+            self.conductor(l, surface, cosine, conductor);
+            next.direction = Vec3::select(l, conductor, mirrored, next.direction);
+        }
+        if needs.ideal_mirror {
+            let mirror = kind(Scatter::IdealMirror);
+            let spectra = int_array(l, surface.spectrum);
+            for i in each(mirror.bits()) {
+                let reflectance = self.values(i, spectra[i]);
+                self.multiply(i, &reflectance);
+            }
+            next.direction = Vec3::select(l, mirror, mirrored, next.direction);
+        }
+        if needs.glass {
+            let glass = kind(Scatter::Glass);
+            if any(glass) {
+                self.glass(
+                    l,
+                    surface,
+                    glass,
+                    (ray, facing, cosine, mirrored),
+                    &mut next,
+                );
+            }
+        }
+        // One Newton step keeps mirrored and refracted directions unit however many there are.
+        let correction = next
+            .direction
+            .length_squared()
+            .mul_add(l.real(-0.5), l.real(1.5));
+        let corrected = next.direction.scale(correction);
+        next.direction = Vec3::select(l, next.specular, corrected, next.direction);
         next
     }
 
+    /// Fresnel reflection at every wavelength.
     #[inline(always)]
-    fn scale(&mut self, l: L, m: L::Mask, j: usize, factor: L::Real) {
-        self.throughput[j] = l.select(m, self.throughput[j] * factor, self.throughput[j]);
+    fn conductor(&mut self, l: L, surface: &Surfaces<L>, cosine: L::Real, m: L::Mask) {
+        let (indices, extinctions) = (
+            int_array(l, surface.spectrum),
+            int_array(l, surface.extinction),
+        );
+        let cosines = array(l, cosine);
+        for i in each(m.bits()) {
+            let n = self.values(i, indices[i]);
+            let k = self.values(i, extinctions[i]);
+            let mut reflectance = n;
+            for c in 0..C {
+                reflectance[c] = fresnel::conductor(cosines[i], n[c], k[c]);
+            }
+            self.multiply(i, &reflectance);
+        }
     }
 
     /// Lambertian reflection: one light, one cosine-distributed direction.
@@ -276,29 +317,27 @@ impl<L: Lanes, const C: usize> Step<L, C> {
     fn diffuse(
         &mut self,
         l: L,
-        model: &Model<L::Scalar>,
         surface: &Surfaces<L>,
-        object: &L::Int,
+        object: L::Int,
         diffuse: L::Mask,
         next: &mut Scattered<L>,
-        rungs: &mut Rungs,
     ) {
         // bsdf · cos / pdf of the cosine-distributed direction is the albedo at every wavelength.
-        for j in 0..C {
-            let albedo = model.spectra.mean(l, surface.spectrum, self.position[j]);
-            self.scale(l, diffuse, j, albedo);
+        let spectra = int_array(l, surface.spectrum);
+        for i in each(diffuse.bits()) {
+            let albedo = self.values(i, spectra[i]);
+            self.multiply(i, &albedo);
         }
         let normal = Vec3::select(l, surface.front, surface.normal, -surface.normal);
-        if !model.lights.is_empty() {
+        if !self.model.lights.is_empty() {
             let leaving = Leaving {
-                object: *object,
+                object,
                 inward: next.inward,
             };
-            self.lights(l, model, surface.point, normal, &leaving, diffuse, rungs);
+            self.lights(l, surface.point, normal, &leaving, diffuse);
         }
-        let [u, v] = model
-            .sequence
-            .pair(l, self.id, Slot::Bsdf.at(l, self.depth));
+        let slot = Slot::Bsdf.at(l, self.depth);
+        let [u, v] = self.model.sequence.pair(l, self.id, slot);
         let local = cosine_hemisphere(l, u, v);
         let (s, t) = normal.frame(l);
         let direction = normal.scale(local.z).along(s, local.x).along(t, local.y);
@@ -312,23 +351,19 @@ impl<L: Lanes, const C: usize> Step<L, C> {
     fn lights(
         &mut self,
         l: L,
-        model: &Model<L::Scalar>,
         point: Vec3<L::Real>,
         normal: Vec3<L::Real>,
         leaving: &Leaving<L>,
         diffuse: L::Mask,
-        rungs: &mut Rungs,
     ) {
+        let model = self.model;
         let zero = l.real(0.0);
-        let one = l.real(1.0);
-        let pair = model
-            .sequence
-            .pair(l, self.id, Slot::Light.at(l, self.depth));
+        let slot = Slot::Light.at(l, self.depth);
+        let pair = model.sequence.pair(l, self.id, slot);
         let mut chosen = l.int(0);
         if model.lights.len() > 1 {
-            let u = model
-                .sequence
-                .single(l, self.id, Slot::Choice.at(l, self.depth));
+            let slot = Slot::Choice.at(l, self.depth);
+            let u = model.sequence.single(l, self.id, slot);
             for (k, light) in model.lights.iter().enumerate().skip(1) {
                 let here = u.ge(l.splat(light.below));
                 chosen = l.select_int(here, l.int(k as u32), chosen);
@@ -353,7 +388,7 @@ impl<L: Lanes, const C: usize> Step<L, C> {
             let mis = if light.shape.has_extent() {
                 power_weight(l, pdf, scattering)
             } else {
-                one
+                l.real(1.0)
             };
             direction = Vec3::select(l, valid, towards.direction, direction);
             distance = l.select(valid, towards.distance, distance);
@@ -365,12 +400,13 @@ impl<L: Lanes, const C: usize> Step<L, C> {
         if !any(asked) {
             return;
         }
-        let shadow = LaneRay::<L>::new(point, direction);
-        let blocked = occluded(l, model, &shadow, leaving, distance, except, asked, rungs);
-        let lit = asked & !blocked;
-        if any(lit) {
-            self.add(l, model, lit, spectrum, weight);
-        }
+        let shadow = Shadow {
+            ray: LaneRay::new(point, direction),
+            limit: distance,
+            except,
+        };
+        let blocked = occluded(l, model, &shadow, leaving, asked, self.rungs);
+        self.add(l, asked & !blocked, spectrum, weight);
     }
 
     /// Reflection or refraction at glass, chosen by the mean reflectance over the wavelengths
@@ -379,90 +415,115 @@ impl<L: Lanes, const C: usize> Step<L, C> {
     fn glass(
         &mut self,
         l: L,
-        model: &Model<L::Scalar>,
         surface: &Surfaces<L>,
         glass: L::Mask,
-        (incoming, facing, cosine, mirrored): (
-            Vec3<L::Real>,
-            Vec3<L::Real>,
-            L::Real,
-            Vec3<L::Real>,
-        ),
+        (ray, facing, cosine, mirrored): (&LaneRay<L>, Vec3<L::Real>, L::Real, Vec3<L::Real>),
         next: &mut Scattered<L>,
     ) {
-        let one = l.real(1.0);
-        let terminated = has(l, self.flags, flags::TERMINATED);
-        let eta_of = |position: L::Real| {
-            let n = model.spectra.between(l, surface.spectrum, position);
-            l.select(surface.front, n, one / n)
-        };
-        let hero_eta = eta_of(self.position[0]);
-        let (transmitted, hero_reflectance) = fresnel::dielectric(l, cosine, hero_eta);
-        let mut reflectance = [hero_reflectance; C];
-        let mut mean = hero_reflectance;
-        let spreads = surface.disperses & !terminated;
-        if model.needs.dispersion && C > 1 {
-            let mut sum = hero_reflectance;
-            for (j, r) in reflectance.iter_mut().enumerate().skip(1) {
-                *r = fresnel::dielectric(l, cosine, eta_of(self.position[j])).1;
-                sum = sum + *r;
+        let one = L::Scalar::from_f64(1.0);
+        let disperses = surface.disperses & !has(l, self.flags, flags::TERMINATED);
+        let spreads = disperses.bits();
+        let front = surface.front.bits();
+        let cosines = array(l, cosine);
+        let spectra = int_array(l, surface.spectrum);
+        let slot = Slot::Choice.at(l, self.depth);
+        let variates = array(l, self.model.sequence.single(l, self.id, slot));
+        let mut etas = [one; WIDEST];
+        let mut refracts = 0;
+        let mut ends = 0;
+        for i in each(glass.bits()) {
+            let slot = self.slots[i] as usize;
+            let hero = self.rows.hero[slot] as usize % C;
+            let eta = self.relative_indices(i, spectra[i], front >> i & 1 == 1);
+            etas[i] = eta[hero];
+            let mut reflectance = [fresnel::dielectric_reflectance(cosines[i], eta[hero]); C];
+            let mut mean = reflectance[hero];
+            if spreads >> i & 1 == 1 {
+                let mut sum = L::Scalar::default();
+                for c in 0..C {
+                    reflectance[c] = fresnel::dielectric_reflectance(cosines[i], eta[c]);
+                    sum = sum + reflectance[c];
+                }
+                mean = sum * L::Scalar::from_f64(1.0 / C as f64);
             }
-            mean = l.select(spreads, sum * l.real(1.0 / C as f64), mean);
-        }
-        let u = model
-            .sequence
-            .single(l, self.id, Slot::Choice.at(l, self.depth));
-        let reflects = glass & u.lt(mean);
-        let refracts = glass & !reflects;
-        let inverse = one / hero_eta;
-        // Radiance per solid angle changes by 1/η² (Veach 1997, section 5.2).
-        let refracted_scale = inverse * inverse / (one - mean);
-        for j in 0..C {
-            self.scale(l, reflects, j, reflectance[j] / mean);
-            self.scale(l, refracts, j, (one - reflectance[j]) * refracted_scale);
-        }
-        let ends = refracts & spreads;
-        if model.needs.dispersion && C > 1 && any(ends) {
-            // Secondary pdfs become 0, the hero's is divided by C.
-            self.scale(l, ends, 0, l.real(C as f64));
-            for j in 1..C {
-                self.scale(l, ends, j, l.real(0.0));
+            let mut factors = reflectance;
+            if variates[i] < mean {
+                for factor in &mut factors {
+                    *factor = *factor / mean;
+                }
+            } else {
+                refracts |= 1 << i;
+                // Radiance changes by 1/η² (Veach 1997, section 5.2).
+                let scale = one / ((one - mean) * eta[hero] * eta[hero]);
+                for factor in &mut factors {
+                    *factor = (one - *factor) * scale;
+                }
+                if spreads >> i & 1 == 1 {
+                    // Secondary pdfs become 0, the hero's is divided by C.
+                    ends |= 1 << i;
+                    let carried = factors[hero] * L::Scalar::from_f64(C as f64);
+                    factors = [L::Scalar::default(); C];
+                    factors[hero] = carried;
+                }
             }
-            self.flags = self.flags | bit_where(l, ends, flags::TERMINATED);
+            self.multiply(i, &factors);
         }
-        let refracted = incoming
+        self.flags = self.flags | bit_where(l, l.mask_from_bits(ends), flags::TERMINATED);
+        let refracts = l.mask_from_bits(refracts);
+        let eta = l.load(&etas);
+        let (transmitted, _) = fresnel::dielectric(l, cosine, eta);
+        let inverse = l.real(1.0) / eta;
+        let refracted = ray
+            .direction
             .scale(inverse)
             .along(facing, inverse.mul_add(cosine, -transmitted));
-        next.direction = Vec3::select(l, reflects, mirrored, next.direction);
+        next.direction = Vec3::select(l, glass, mirrored, next.direction);
         next.direction = Vec3::select(l, refracts, refracted, next.direction);
         next.inward = (next.inward & !refracts) | (refracts & surface.front);
     }
 
+    /// n_transmitted/n_incident at a lane's wavelengths, n linear between the grid's nodes.
+    #[inline(always)]
+    fn relative_indices(&self, i: usize, spectrum: u32, entering: bool) -> [L::Scalar; C] {
+        let slot = self.slots[i] as usize;
+        let (row, fraction) = (self.rows.row[slot], self.rows.fraction[slot]);
+        let low = self.model.spectra.row::<C>(spectrum, row);
+        let high = self.model.spectra.row::<C>(spectrum, row + 1);
+        let mut eta = *low;
+        for c in 0..C {
+            let n = fraction.fused(high[c] - low[c], low[c]);
+            eta[c] = if entering {
+                n
+            } else {
+                L::Scalar::from_f64(1.0) / n
+            };
+        }
+        eta
+    }
+
     /// Ends paths with the probability that their throughput is lost anyway, and rewards the rest.
     #[inline(always)]
-    fn roulette(&mut self, l: L, model: &Model<L::Scalar>, going: L::Mask) -> L::Mask {
-        let zero = l.real(0.0);
-        let mut largest = zero;
-        for throughput in self.throughput {
-            largest = largest.max(throughput);
-        }
-        let going = going & largest.gt(zero);
+    fn roulette(&mut self, l: L, going: L::Mask) -> L::Mask {
+        let largest = l.load(&self.largest);
+        let going = going & largest.gt(l.real(0.0));
         let late = going & !self.depth.plus(l.int(1)).below(l.int(ROULETTE_FROM));
         if !any(late) {
             return going;
         }
+        let one = l.real(1.0);
         let terminated = has(l, self.flags, flags::TERMINATED);
-        let carried = l.select(terminated, l.real(1.0 / C as f64), l.real(1.0));
+        let carried = l.select(terminated, l.real(1.0 / C as f64), one);
         let beyond = has(l, self.flags, flags::BEYOND);
-        let share = l.select(beyond, l.real(BEYOND_SHARE), l.real(1.0));
+        let share = l.select(beyond, l.real(BEYOND_SHARE), one);
         let survival = (largest * carried * share).min(l.real(LARGEST_SURVIVAL));
-        let u = model
-            .sequence
-            .single(l, self.id, Slot::Roulette.at(l, self.depth));
-        let survives = u.lt(survival);
-        let reward = l.real(1.0) / survival;
-        for j in 0..C {
-            self.scale(l, late & survives, j, reward);
+        let slot = Slot::Roulette.at(l, self.depth);
+        let u = self.model.sequence.single(l, self.id, slot);
+        let survives = late & u.lt(survival);
+        let rewards = array(l, one / survival);
+        for i in each(survives.bits()) {
+            for value in &mut self.rows.throughput[self.slots[i] as usize] {
+                *value = *value * rewards[i];
+            }
         }
         going & (survives | !late)
     }

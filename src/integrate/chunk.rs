@@ -4,16 +4,15 @@ use super::bounce::bounce;
 use super::develop::Spectrometer;
 use super::intersect::{NOTHING, Rungs};
 use super::model::Model;
-use super::pool::{IntField, Pool, RealField, Results, SpectralField, flags};
-use crate::math::lanes::Lanes;
+use super::pool::{IntField, Pool, RealField, Rows, WIDEST, array, flags, int_array};
+use crate::math::lanes::{Lanes, Scalar};
+use crate::spectrum::grid::CELLS;
 
 /// Paths in flight: a multiple of every lane count, small enough to stay in the cache beside the
 /// results.
 pub const POOL: usize = 512;
 /// Most samples of a chunk.
 pub const CHUNK: usize = 4096;
-/// A packet may write this far past the last sample.
-const PADDING: usize = 16;
 
 /// One camera sample to take: pixel and index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,31 +37,34 @@ pub struct Beyond {
 /// Buffers of one worker, used again for every chunk.
 #[derive(Debug)]
 pub struct Workspace<T, const C: usize> {
-    pool: Pool<T, C>,
-    /// Radiance by sample.
-    pub results: Results<T, C>,
+    pool: Pool<T>,
+    /// Spectra by sample; behind [`CHUNK`] those of the paths that go on beyond `max_depth`.
+    rows: Rows<T, C>,
+    /// Samples of this chunk whose paths went on.
+    beyond_slots: Vec<u32>,
     /// X, Y, Z by sample.
-    pub tristimulus: [Vec<T>; 3],
+    pub tristimulus: Vec<[T; 3]>,
     /// Which arithmetic decided.
     pub rungs: Rungs,
     /// What `max_depth` cut off.
     pub beyond: Beyond,
 }
 
-impl<T: crate::math::lanes::Scalar, const C: usize> Workspace<T, C> {
+impl<T: Scalar, const C: usize> Workspace<T, C> {
     /// Allocates the buffers.
     pub fn new() -> Self {
         Self {
             pool: Pool::new(POOL),
-            results: Results::new(CHUNK + PADDING),
-            tristimulus: std::array::from_fn(|_| vec![T::default(); CHUNK + PADDING]),
+            rows: Rows::new(2 * CHUNK),
+            beyond_slots: Vec::new(),
+            tristimulus: Vec::new(),
             rungs: Rungs::default(),
             beyond: Beyond::default(),
         }
     }
 }
 
-impl<T: crate::math::lanes::Scalar, const C: usize> Default for Workspace<T, C> {
+impl<T: Scalar, const C: usize> Default for Workspace<T, C> {
     fn default() -> Self {
         Self::new()
     }
@@ -80,13 +82,15 @@ pub fn render<L: Lanes, const C: usize>(
 ) {
     let Workspace {
         pool,
-        results,
+        rows,
+        beyond_slots,
         tristimulus,
         rungs,
         beyond,
     } = workspace;
     pool.length = 0;
     pool.alive = 0;
+    beyond_slots.clear();
     let mut taken = 0;
     loop {
         let waiting = taken < requests.len();
@@ -94,19 +98,10 @@ pub fn render<L: Lanes, const C: usize>(
         let open = POOL - pool.alive;
         // Compaction moves every field of every path: only when a quarter of the places gains.
         if holes * 4 >= pool.length.max(1) || (waiting && open * 4 >= POOL) {
-            retire(pool, results, spectrometer, beyond);
             pool.compact(l);
             while taken < requests.len() && pool.length + L::COUNT <= POOL {
                 let end = requests.len().min(taken + L::COUNT);
-                start(
-                    l,
-                    model,
-                    spectrometer,
-                    &requests[taken..end],
-                    taken,
-                    pool,
-                    results,
-                );
+                start(l, model, &requests[taken..end], taken, pool, rows);
                 taken = end;
             }
             pool.all_alive::<L>();
@@ -120,33 +115,37 @@ pub fn render<L: Lanes, const C: usize>(
             if active == 0 {
                 continue;
             }
-            let survivors = bounce(l, model, pool, results, at, active, rungs) & active;
+            let survivors = bounce(l, model, pool, rows, beyond_slots, at, active, rungs) & active;
             pool.masks[packet] = survivors;
             alive += survivors.count_ones() as usize;
         }
         pool.alive = alive;
     }
-    for at in (0..requests.len()).step_by(L::COUNT) {
-        let xyz = spectrometer.tristimulus::<L, C>(l, results, at);
-        for (values, to) in xyz.into_iter().zip(tristimulus.iter_mut()) {
-            l.store(values, &mut to[at..]);
-        }
+    tristimulus.clear();
+    for slot in 0..requests.len() {
+        tristimulus.push(spectrometer.tristimulus(rows, slot));
+    }
+    // In the order of the samples, not of the paths' ends.
+    beyond_slots.sort_unstable();
+    for &slot in beyond_slots.iter() {
+        let y = spectrometer.tristimulus(rows, slot as usize)[1].to_f64();
+        beyond.sum += y;
+        beyond.squares += y * y;
     }
 }
 
-/// Puts the camera rays of at most one packet of requests at the end of the pool; their results
-/// go to slots `first ..`.
+/// Puts the camera rays of at most one packet of requests at the end of the pool; their rows are
+/// `first ..`.
 #[inline(always)]
 fn start<L: Lanes, const C: usize>(
     l: L,
     model: &Model<L::Scalar>,
-    spectrometer: &Spectrometer<L::Scalar>,
     requests: &[Request],
     first: usize,
-    pool: &mut Pool<L::Scalar, C>,
-    results: &mut Results<L::Scalar, C>,
+    pool: &mut Pool<L::Scalar>,
+    rows: &mut Rows<L::Scalar, C>,
 ) {
-    let mut numbers = [[0u32; PADDING]; 5];
+    let mut numbers = [[0u32; WIDEST]; 5];
     let replicates = model.sequence.replicates;
     for (i, request) in requests.iter().enumerate() {
         numbers[0][i] = request.x;
@@ -154,10 +153,31 @@ fn start<L: Lanes, const C: usize>(
         (numbers[2][i], numbers[3][i]) = replicates.place(request.sample);
         numbers[4][i] = (first + i) as u32;
     }
-    let [x, y, replicate, index, slot] = numbers.map(|n| l.load_int(&n));
+    let [x, y, replicate, index, slot] = [
+        l.load_int(&numbers[0]),
+        l.load_int(&numbers[1]),
+        l.load_int(&numbers[2]),
+        l.load_int(&numbers[3]),
+        l.load_int(&numbers[4]),
+    ];
     let id = model.sequence.identity(l, x, y, replicate, index);
     let sample = model.sequence.camera(l, id, model.needs.lens);
     let (origin, direction) = model.camera.rays(l, x, y, &sample);
+
+    // The hero's cell, and from it the row that all C wavelengths share.
+    let position = sample.wavelength * l.real(CELLS as f64);
+    let cell = l.truncate(position);
+    let cells = int_array(l, cell);
+    let fractions = array(l, position - l.to_real(cell));
+    let per_wavelength = (CELLS / C) as u32;
+    for i in 0..requests.len() {
+        let slot = first + i;
+        rows.row[slot] = cells[i] % per_wavelength;
+        rows.hero[slot] = cells[i] / per_wavelength;
+        rows.fraction[slot] = fractions[i];
+        rows.radiance[slot] = [L::Scalar::default(); C];
+        rows.throughput[slot] = [L::Scalar::from_f64(1.0); C];
+    }
 
     let at = pool.length;
     for (field, v) in [
@@ -168,41 +188,12 @@ fn start<L: Lanes, const C: usize>(
         pool.set_real(l, field, 1, at, v.y);
         pool.set_real(l, field, 2, at, v.z);
     }
-    let zero = l.real(0.0);
-    pool.set_real(l, RealField::Pdf, 0, at, zero);
-    let positions =
-        std::array::from_fn(|j| spectrometer.wavelength::<L, C>(l, sample.wavelength, j).0);
-    pool.set_spectral(l, SpectralField::Position, at, positions);
-    pool.set_spectral(l, SpectralField::Throughput, at, [l.real(1.0); C]);
-    pool.set_spectral(l, SpectralField::Radiance, at, [zero; C]);
+    pool.set_real(l, RealField::Pdf, 0, at, l.real(0.0));
     pool.set_int(l, IntField::Departure, at, l.int(NOTHING));
     pool.set_int(l, IntField::Flags, at, l.int(flags::SPECULAR));
     pool.set_int(l, IntField::Depth, at, l.int(0));
     pool.set_int(l, IntField::Key, at, id.key);
     pool.set_int(l, IntField::Index, at, id.index);
     pool.set_int(l, IntField::Slot, at, slot);
-    l.store(sample.wavelength, &mut results.hero[first..]);
     pool.length += requests.len();
-}
-
-/// Hands in the results of the paths that have ended.
-fn retire<T: crate::math::lanes::Scalar, const C: usize>(
-    pool: &Pool<T, C>,
-    results: &mut Results<T, C>,
-    spectrometer: &Spectrometer<T>,
-    beyond: &mut Beyond,
-) {
-    for at in pool.ended() {
-        let radiance = pool.radiance_of(at);
-        if pool.int_of(IntField::Flags, at) & flags::BEYOND != 0 {
-            let y = spectrometer.luminance(radiance, pool.positions_of(at));
-            beyond.sum += y;
-            beyond.squares += y * y;
-            continue;
-        }
-        let slot = pool.int_of(IntField::Slot, at) as usize;
-        for (j, value) in radiance.into_iter().enumerate() {
-            results.radiance[j * results.capacity + slot] = value;
-        }
-    }
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::model::Model;
 use super::pool::any;
-use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
+use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
 use crate::shape::Tally;
 use crate::shape::lanes::implicit::StartSign;
 use crate::shape::lanes::{LaneRay, Span};
@@ -74,8 +74,14 @@ fn candidate<L: Lanes>(
     inward: L::Mask,
 ) -> Candidate<L> {
     let zero = l.real(0.0);
-    let ahead = |t: L::Real| t.gt(span.error);
-    let behind = |t: L::Real| t.lt(-span.error);
+    let ahead = inlined(
+        #[inline(always)]
+        |t: L::Real| t.gt(span.error),
+    );
+    let behind = inlined(
+        #[inline(always)]
+        |t: L::Real| t.lt(-span.error),
+    );
     if flat {
         let miss = span.miss | behind(span.near) | own;
         let hit = span.hit & ahead(span.near) & !own;
@@ -193,7 +199,18 @@ pub fn nearest<L: Lanes>(
     )
 }
 
-/// Which of the active rays meet anything before `limit`, except object `except`.
+/// Rays towards lights.
+#[derive(Clone, Copy)]
+pub struct Shadow<L: Lanes> {
+    /// From the surface.
+    pub ray: LaneRay<L>,
+    /// Distance of the light.
+    pub limit: L::Real,
+    /// The light itself, which does not hide its own point.
+    pub except: L::Int,
+}
+
+/// Which of the active rays meet anything before their limit.
 ///
 /// The far end is a point on another surface, rounded; what is not *certainly* before it is taken
 /// to be that surface's own neighbourhood, not an occluder.
@@ -201,16 +218,16 @@ pub fn nearest<L: Lanes>(
 pub fn occluded<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
-    ray: &LaneRay<L>,
+    shadow: &Shadow<L>,
     leaving: &Leaving<L>,
-    limit: L::Real,
-    except: L::Int,
     active: L::Mask,
     rungs: &mut Rungs,
 ) -> L::Mask {
     l.vectorize(
         #[inline(always)]
         || {
+            let Shadow { ray, limit, except } = *shadow;
+            let ray = &ray;
             let mut blocked = l.mask(false);
             let mut doubtful = l.mask(false);
             for (k, shape) in model.shapes.iter().enumerate() {

@@ -1,12 +1,16 @@
-//! The state of the paths in flight: a structure of arrays that stays packed.
+//! The state of the paths in flight.
 //!
 //! Paths end at different times. Each pass over the pool advances all of them by one segment;
 //! when enough have ended the survivors are moved together, in order, and new camera samples fill
-//! the free end, so that lanes stay full.
+//! the free end, so that lanes stay full. Only what changes places with a path lies in the pool;
+//! its spectra lie in rows by sample ([`Rows`]) and stay where they are.
 
-use crate::math::lanes::{Lanes, Mask};
+use crate::math::lanes::{Int, Lanes, Mask, Scalar};
 
-/// Real numbers of a path before its spectral ones.
+/// Most lanes of a packet.
+pub const WIDEST: usize = 16;
+
+/// Real numbers of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(usize)]
 pub enum RealField {
@@ -18,8 +22,8 @@ pub enum RealField {
     Pdf = 6,
 }
 
-/// Number of reals before the spectral ones.
-const PLAIN_REALS: usize = 7;
+/// Number of reals.
+const REALS: usize = 7;
 
 /// Integers of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,7 +39,7 @@ pub enum IntField {
     Key = 3,
     /// Index within the replicate.
     Index = 4,
-    /// Where the result goes.
+    /// Number of its rows.
     Slot = 5,
 }
 
@@ -54,12 +58,10 @@ pub mod flags {
     pub const BEYOND: u32 = 8;
 }
 
-/// Paths in flight with `C` wavelengths each.
+/// Paths in flight.
 #[derive(Debug)]
-pub struct Pool<T, const C: usize> {
+pub struct Pool<T> {
     capacity: usize,
-    /// Lanes of a packet.
-    lanes: usize,
     /// Paths in the pool, ended ones included.
     pub length: usize,
     /// Paths still going.
@@ -70,55 +72,44 @@ pub struct Pool<T, const C: usize> {
     pub masks: Vec<u32>,
 }
 
-/// Where a spectral quantity of wavelength j is kept.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(usize)]
-pub enum SpectralField {
-    /// Throughput.
-    Throughput = 0,
-    /// Radiance gathered.
-    Radiance = 1,
-    /// Wavelength as a position on the grid.
-    Position = 2,
-}
-
-/// Number of spectral quantities.
-const SPECTRAL: usize = 3;
-
-/// The results of a chunk of samples, by slot.
+/// Spectra of the samples of a chunk, one row of C values a sample.
 #[derive(Debug)]
-pub struct Results<T, const C: usize> {
-    /// Radiance of wavelength j in slot s at `j * capacity + s`.
-    pub radiance: Vec<T>,
-    /// Hero wavelength variates.
-    pub hero: Vec<T>,
-    /// Number of slots.
-    pub capacity: usize,
+pub struct Rows<T, const C: usize> {
+    /// Radiance gathered.
+    pub radiance: Vec<[T; C]>,
+    /// Throughput of the path so far.
+    pub throughput: Vec<[T; C]>,
+    /// Which row of every spectrum holds the path's wavelengths.
+    pub row: Vec<u32>,
+    /// Which of the wavelengths is the hero.
+    pub hero: Vec<u32>,
+    /// How far into its cell each wavelength lies, [0, 1).
+    pub fraction: Vec<T>,
 }
 
-impl<T: Copy + Default, const C: usize> Results<T, C> {
-    /// Room for `capacity` samples.
-    pub fn new(capacity: usize) -> Self {
+impl<T: Scalar, const C: usize> Rows<T, C> {
+    /// Room for `samples` samples.
+    pub fn new(samples: usize) -> Self {
         Self {
-            radiance: vec![T::default(); C * capacity],
-            hero: vec![T::default(); capacity],
-            capacity,
+            radiance: vec![[T::default(); C]; samples],
+            throughput: vec![[T::default(); C]; samples],
+            row: vec![0; samples],
+            hero: vec![0; samples],
+            fraction: vec![T::default(); samples],
         }
     }
 }
 
-impl<T: Copy + Default, const C: usize> Pool<T, C> {
+impl<T: Copy + Default> Pool<T> {
     /// An empty pool for `paths` paths.
     pub fn new(paths: usize) -> Self {
-        let real_fields = PLAIN_REALS + SPECTRAL * C;
         // A packet may be stored at any place, so it may reach past the last path.
-        let capacity = paths + 16;
+        let capacity = paths + WIDEST;
         Self {
             capacity,
-            lanes: 1,
             length: 0,
             alive: 0,
-            reals: vec![T::default(); real_fields * capacity],
+            reals: vec![T::default(); REALS * capacity],
             ints: vec![0; INTS * capacity],
             masks: vec![0; capacity],
         }
@@ -136,35 +127,9 @@ impl<T: Copy + Default, const C: usize> Pool<T, C> {
                 break;
             }
         }
-        self.lanes = L::COUNT;
     }
 
-    /// The places of paths that have ended since the last compaction.
-    pub fn ended(&self) -> impl Iterator<Item = usize> + '_ {
-        let (lanes, length) = (self.lanes, self.length);
-        (0..length)
-            .step_by(lanes)
-            .enumerate()
-            .flat_map(move |(packet, at)| {
-                let here = (length - at).min(lanes);
-                let all = ((1u64 << here) - 1) as u32;
-                let mut bits = all & !self.masks[packet];
-                std::iter::from_fn(move || {
-                    (bits != 0).then(|| {
-                        let i = bits.trailing_zeros() as usize;
-                        bits &= bits - 1;
-                        at + i
-                    })
-                })
-            })
-    }
-
-    #[inline(always)]
-    fn real_at(&self, field: usize, at: usize) -> usize {
-        field * self.capacity + at
-    }
-
-    /// Reads a packet of a plain field's component.
+    /// Reads a packet of a field's component.
     #[inline(always)]
     pub fn real<L: Lanes<Scalar = T>>(
         &self,
@@ -173,10 +138,10 @@ impl<T: Copy + Default, const C: usize> Pool<T, C> {
         i: usize,
         at: usize,
     ) -> L::Real {
-        l.load(&self.reals[self.real_at(field as usize + i, at)..])
+        l.load(&self.reals[(field as usize + i) * self.capacity + at..])
     }
 
-    /// Writes a packet of a plain field's component.
+    /// Writes a packet of a field's component.
     #[inline(always)]
     pub fn set_real<L: Lanes<Scalar = T>>(
         &mut self,
@@ -186,39 +151,8 @@ impl<T: Copy + Default, const C: usize> Pool<T, C> {
         at: usize,
         x: L::Real,
     ) {
-        let at = self.real_at(field as usize + i, at);
+        let at = (field as usize + i) * self.capacity + at;
         l.store(x, &mut self.reals[at..]);
-    }
-
-    #[inline(always)]
-    fn spectral_at(&self, field: SpectralField, j: usize, at: usize) -> usize {
-        self.real_at(PLAIN_REALS + field as usize * C + j, at)
-    }
-
-    /// Reads a packet of a spectral field.
-    #[inline(always)]
-    pub fn spectral<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        field: SpectralField,
-        at: usize,
-    ) -> [L::Real; C] {
-        std::array::from_fn(|j| l.load(&self.reals[self.spectral_at(field, j, at)..]))
-    }
-
-    /// Writes a packet of a spectral field.
-    #[inline(always)]
-    pub fn set_spectral<L: Lanes<Scalar = T>>(
-        &mut self,
-        l: L,
-        field: SpectralField,
-        at: usize,
-        x: [L::Real; C],
-    ) {
-        for (j, x) in x.into_iter().enumerate() {
-            let at = self.spectral_at(field, j, at);
-            l.store(x, &mut self.reals[at..]);
-        }
     }
 
     /// Reads a packet of an integer field.
@@ -234,24 +168,17 @@ impl<T: Copy + Default, const C: usize> Pool<T, C> {
         l.store_int(x, &mut self.ints[at..]);
     }
 
-    /// One path's radiance.
-    pub fn radiance_of(&self, at: usize) -> [T; C] {
-        std::array::from_fn(|j| self.reals[self.spectral_at(SpectralField::Radiance, j, at)])
-    }
-
-    /// One path's wavelengths as grid positions.
-    pub fn positions_of(&self, at: usize) -> [T; C] {
-        std::array::from_fn(|j| self.reals[self.spectral_at(SpectralField::Position, j, at)])
-    }
-
-    /// One path's integer.
-    pub fn int_of(&self, field: IntField, at: usize) -> u32 {
-        self.ints[field as usize * self.capacity + at]
-    }
-
     /// Moves the paths still going to the front, keeping their order.
-    #[inline(always)]
+    #[inline(never)]
     pub fn compact<L: Lanes<Scalar = T>>(&mut self, l: L) {
+        l.vectorize(
+            #[inline(always)]
+            || self.compact_inlined(l),
+        );
+    }
+
+    #[inline(always)]
+    fn compact_inlined<L: Lanes<Scalar = T>>(&mut self, l: L) {
         let mut to = 0;
         for (packet, from) in (0..self.length).step_by(L::COUNT).enumerate() {
             let bits = self.masks[packet];
@@ -277,10 +204,9 @@ impl<T: Copy + Default, const C: usize> Pool<T, C> {
     }
 }
 
-/// Whether a lane's flags contain a bit.
+/// Where a lane's flags contain a bit.
 #[inline(always)]
 pub fn has<L: Lanes>(l: L, value: L::Int, bit: u32) -> L::Mask {
-    use crate::math::lanes::Int;
     !(value & l.int(bit)).same(l.int(0))
 }
 
@@ -294,4 +220,36 @@ pub fn bit_where<L: Lanes>(l: L, m: L::Mask, bit: u32) -> L::Int {
 #[inline(always)]
 pub fn any<M: Mask>(m: M) -> bool {
     m.any()
+}
+
+/// The numbers of the true lanes, in order.
+#[inline(always)]
+pub fn each(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(
+        #[inline(always)]
+        move || {
+            if bits == 0 {
+                return None;
+            }
+            let i = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            Some(i)
+        },
+    )
+}
+
+/// A packet of reals as an array; unused places are zero.
+#[inline(always)]
+pub fn array<L: Lanes>(l: L, x: L::Real) -> [L::Scalar; WIDEST] {
+    let mut out = [L::Scalar::default(); WIDEST];
+    l.store(x, &mut out);
+    out
+}
+
+/// A packet of integers as an array; unused places are zero.
+#[inline(always)]
+pub fn int_array<L: Lanes>(l: L, x: L::Int) -> [u32; WIDEST] {
+    let mut out = [0; WIDEST];
+    l.store_int(x, &mut out);
+    out
 }

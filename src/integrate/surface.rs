@@ -3,7 +3,7 @@
 use super::intersect::Nearest;
 use super::model::{Model, Scatter};
 use super::pool::any;
-use crate::math::lanes::{Int, Lanes, Mask, Real};
+use crate::math::lanes::{Int, Lanes, Mask, Real, inlined};
 use crate::math::vec3::Vec3;
 use crate::sample::mis::power_weight;
 use crate::shape::lanes::LaneRay;
@@ -96,7 +96,10 @@ pub fn surfaces<L: Lanes>(
                 out.scatter = l.select_int(here, l.int(shading.scatter as u32), out.scatter);
                 let mut spectrum = l.int(shading.spectrum);
                 if let Some(checker) = &shading.checker {
-                    let cell = |x: L::Real, frequency| (x * l.splat(frequency)).floor();
+                    let cell = inlined(
+                        #[inline(always)]
+                        |x: L::Real, frequency| (x * l.splat(frequency)).floor(),
+                    );
                     let [fx, fy, fz] = checker.frequency;
                     let half =
                         (cell(local.x, fx) + cell(local.y, fy) + cell(local.z, fz)) * l.real(0.5);

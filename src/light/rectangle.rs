@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{Towards, any, area_pdf, by_area, vector};
 use crate::math::functions::{atan2_turns, sin_cos_turns};
-use crate::math::lanes::{Lanes, Real, Scalar};
+use crate::math::lanes::{Lanes, Real, Scalar, inlined};
 use crate::math::vec3::Vec3;
 
 /// A rectangle sampled uniformly in solid angle from near points and by area from far ones.
@@ -77,10 +77,13 @@ impl<T: Scalar> RectangleLight<T> {
         };
         if any(near) {
             let zz = z * z;
-            let corner = |x: L::Real, y: L::Real, sign: f64| {
-                let r = x.mul_add(x, y.mul_add(y, zz)).sqrt();
-                atan2_turns(l, -(z * r), x * y * l.real(sign))
-            };
+            let corner = inlined(
+                #[inline(always)]
+                |x: L::Real, y: L::Real, sign: f64| {
+                    let r = x.mul_add(x, y.mul_add(y, zz)).sqrt();
+                    atan2_turns(l, -(z * r), x * y * l.real(sign))
+                },
+            );
             let g0 = corner(x[1], y[0], 1.0);
             let g1 = corner(x[1], y[1], -1.0);
             let g2 = corner(x[0], y[1], 1.0);
@@ -165,7 +168,10 @@ impl<L: Lanes> Seen<L> {
         let one = l.real(1.0);
         let zero = l.real(0.0);
         let zz = self.z * self.z;
-        let b = |y: L::Real| y / y.mul_add(y, zz).sqrt();
+        let b = inlined(
+            #[inline(always)]
+            |y: L::Real| y / y.mul_add(y, zz).sqrt(),
+        );
         let (b0, b1) = (-b(self.y[0]), b(self.y[1]));
         let angle = u.mul_add(self.turns, one - self.corners);
         let (sine, cosine) = sin_cos_turns(l, angle);
@@ -175,7 +181,10 @@ impl<L: Lanes> Seen<L> {
         let across = -(c * self.z) / (-c).mul_add(c, one).max(zero).sqrt();
         let x = across.max(self.x[0]).min(self.x[1]);
         let d2 = x.mul_add(x, zz);
-        let h = |y: L::Real| y / y.mul_add(y, d2).sqrt();
+        let h = inlined(
+            #[inline(always)]
+            |y: L::Real| y / y.mul_add(y, d2).sqrt(),
+        );
         let (h0, h1) = (h(self.y[0]), h(self.y[1]));
         let hv = v.mul_add(h1 - h0, h0);
         let y = hv * (d2 / (-hv).mul_add(hv, one)).sqrt();

@@ -1,6 +1,6 @@
 //! Fresnel reflectance of smooth interfaces for unpolarised light.
 
-use crate::math::lanes::{Lanes, Real};
+use crate::math::lanes::{Lanes, Real, Scalar};
 
 /// Cosine of the refracted ray and reflectance at a dielectric interface, for incidence cosine
 /// `cosine` ≥ 0 and `eta` = n_transmitted/n_incident; reflectance 1 and cosine 0 where all light
@@ -27,21 +27,39 @@ pub fn dielectric<L: Lanes>(l: L, cosine: L::Real, eta: L::Real) -> (L::Real, L:
 /// (Born and Wolf 14.4.1; the arrangement without complex numbers is that of S. Lagarde, "Memo
 /// on Fresnel equations", 2013).
 #[inline(always)]
-pub fn conductor<L: Lanes>(l: L, cosine: L::Real, n: L::Real, k: L::Real) -> L::Real {
-    let one = l.real(1.0);
-    let two = l.real(2.0);
+pub fn conductor<T: Scalar>(cosine: T, n: T, k: T) -> T {
+    let number = T::from_f64;
+    let one = number(1.0);
     let c2 = cosine * cosine;
     let s2 = (one - cosine) * (one + cosine);
     let (n2, k2) = (n * n, k * k);
     let t0 = n2 - k2 - s2;
     // |√(η² − s²)|² = a² + b²
-    let sum = t0.mul_add(t0, l.real(4.0) * n2 * k2).sqrt();
-    let a = ((sum + t0) * l.real(0.5)).max(l.real(0.0)).sqrt();
+    let sum = t0.fused(t0, number(4.0) * n2 * k2).root();
+    let a = ((sum + t0) * number(0.5)).larger(T::default()).root();
     let t1 = sum + c2;
-    let t2 = two * a * cosine;
+    let t2 = number(2.0) * a * cosine;
     let s = (t1 - t2) / (t1 + t2);
-    let t3 = c2.mul_add(sum, s2 * s2);
+    let t3 = c2.fused(sum, s2 * s2);
     let t4 = t2 * s2;
-    let p = s * (t3 - t4) / (t3 + t4);
-    (s + p) * l.real(0.5)
+    let p = s * ((t3 - t4) / (t3 + t4));
+    (s + p) * number(0.5)
+}
+
+/// Reflectance at a dielectric interface for one value, as [`dielectric`].
+#[inline(always)]
+pub fn dielectric_reflectance<T: Scalar>(cosine: T, eta: T) -> T {
+    let one = T::from_f64(1.0);
+    let zero = T::default();
+    let inverse = one / eta;
+    let sine_squared = (one - cosine) * (one + cosine) * inverse * inverse;
+    let transmitted = (one - sine_squared).larger(zero).root();
+    let s = (cosine - eta * transmitted) / (cosine + eta * transmitted);
+    let p = (eta * cosine - transmitted) / (eta * cosine + transmitted);
+    let reflectance = (s * s + p * p) * T::from_f64(0.5);
+    if sine_squared >= one {
+        one
+    } else {
+        reflectance
+    }
 }

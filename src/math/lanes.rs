@@ -12,13 +12,31 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, f32x16, f64x8, i32x16, mask32x16, mask64x8, u32x16, u64x8};
 
 /// The scalar stored in one lane, as arrays keep it.
-pub trait Scalar: Copy + Default + Debug + PartialOrd + Send + Sync + 'static {
+pub trait Scalar:
+    Copy
+    + Default
+    + Debug
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Send
+    + Sync
+    + 'static
+{
     /// Unit roundoff u of round-to-nearest: 2⁻²⁴ or 2⁻⁵³.
     const ROUNDOFF: f64;
     /// The nearest value of this type.
     fn from_f64(x: f64) -> Self;
     /// Exact widening.
     fn to_f64(self) -> f64;
+    /// `self · a + b`, rounded once.
+    fn fused(self, a: Self, b: Self) -> Self;
+    /// Square root, correctly rounded.
+    fn root(self) -> Self;
+    /// The larger; the other operand where one is NaN.
+    fn larger(self, other: Self) -> Self;
 }
 
 impl Scalar for f32 {
@@ -31,6 +49,18 @@ impl Scalar for f32 {
     fn to_f64(self) -> f64 {
         self.into()
     }
+    #[inline(always)]
+    fn fused(self, a: Self, b: Self) -> Self {
+        self.mul_add(a, b)
+    }
+    #[inline(always)]
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
 }
 
 impl Scalar for f64 {
@@ -42,6 +72,18 @@ impl Scalar for f64 {
     #[inline(always)]
     fn to_f64(self) -> f64 {
         self
+    }
+    #[inline(always)]
+    fn fused(self, a: Self, b: Self) -> Self {
+        self.mul_add(a, b)
+    }
+    #[inline(always)]
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        if self > other { self } else { other }
     }
 }
 
@@ -184,6 +226,13 @@ pub trait Lanes: Copy + Send + Sync + 'static {
         let kept = bits.right(32 - Self::UNIFORM_BITS);
         self.to_real(kept) * self.real(1.0 / (1u64 << Self::UNIFORM_BITS) as f64)
     }
+}
+
+/// Gives a closure back. An attribute may stand on an argument but not on the right of `let`, and
+/// a closure over lanes must be inlined to be compiled for the instruction set of its caller.
+#[inline(always)]
+pub fn inlined<F>(f: F) -> F {
+    f
 }
 
 /// Single precision: f32 × 16.

@@ -4,7 +4,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use glam::DVec3;
 
-use super::lanes::{Lanes, Real};
+use super::lanes::{Lanes, Real, inlined};
 
 /// Three reals a lane.
 #[derive(Clone, Copy)]
@@ -197,13 +197,16 @@ impl<T: super::lanes::Scalar> Rows<T> {
     /// Transpose of the linear part times a vector: normals, when these rows are the inverse.
     #[inline(always)]
     pub fn transposed<L: Lanes<Scalar = T>>(&self, l: L, v: Vec3<L::Real>) -> Vec3<L::Real> {
-        let column = |j: usize| {
-            l.splat(self.rows[0][j]).mul_add(
-                v.x,
-                l.splat(self.rows[1][j])
-                    .mul_add(v.y, l.splat(self.rows[2][j]) * v.z),
-            )
-        };
+        let column = inlined(
+            #[inline(always)]
+            |j: usize| {
+                l.splat(self.rows[0][j]).mul_add(
+                    v.x,
+                    l.splat(self.rows[1][j])
+                        .mul_add(v.y, l.splat(self.rows[2][j]) * v.z),
+                )
+            },
+        );
         Vec3::new(column(0), column(1), column(2))
     }
 }

@@ -18,10 +18,10 @@ use crate::shape::lanes::implicit::LaneImplicit;
 use crate::shape::resolve::Resolver;
 use crate::shape::{Placed, ShapeKind};
 use crate::spectrum::Spectrum;
-use crate::spectrum::cells::cells;
-use crate::spectrum::grid::{CELLS, CELLS_PER_NM, LONGEST, SHORTEST, SpectrumBank};
+use crate::spectrum::cells;
+use crate::spectrum::grid::{CELLS, Cumulative, SpectrumBank};
 use crate::spectrum::ior::RefractiveIndex;
-use crate::spectrum::observer::{self, spectrum_to_xyz};
+use crate::spectrum::observer::spectrum_to_xyz;
 
 /// Builds model and spectrometer.
 ///
@@ -31,7 +31,7 @@ pub fn build<T: Scalar>(
     scene: &Scene,
     choices: &Choices,
 ) -> Result<(Model<T>, Spectrometer<T>), PlanError> {
-    let mut builder = Builder::<T>::default();
+    let mut builder = Builder::<T>::new(choices.wavelengths as usize);
     for (index, object) in scene.objects.iter().enumerate() {
         let placed = builder
             .place(scene, index)
@@ -66,22 +66,7 @@ pub fn build<T: Scalar>(
         spectra: builder.bank,
         resolver: builder.resolver,
     };
-    Ok((model, spectrometer()))
-}
-
-/// The observer on the grid.
-fn spectrometer<T: Scalar>() -> Spectrometer<T> {
-    let curves: [Vec<f64>; 3] = std::array::from_fn(|i| {
-        (0..CELLS)
-            .map(|cell| {
-                // A quarter-nanometre cell never straddles a node of the 1 nm table, so the mean
-                // of the interpolant is its value in the middle.
-                let nm = SHORTEST + (cell as f64 + 0.5) / CELLS_PER_NM;
-                observer::xyz_bar(nm)[i] / observer::Y_INTEGRAL
-            })
-            .collect()
-    });
-    Spectrometer::new([&curves[0], &curves[1], &curves[2]])
+    Ok((model, Spectrometer::new(choices.wavelengths as usize)))
 }
 
 /// Where an object stands: its map about the camera and the inverse.
@@ -90,9 +75,10 @@ struct Placement {
     inverse: Affine,
 }
 
-#[derive(Default)]
 struct Builder<T> {
     bank: SpectrumBank<T>,
+    /// Edges of the wavelength grid's cells, nm.
+    edges: Vec<f64>,
     known: Vec<(Spectrum, u32)>,
     known_indices: Vec<(RefractiveIndex, [u32; 2])>,
     shapes: Vec<LaneShape<T>>,
@@ -104,29 +90,46 @@ struct Builder<T> {
 }
 
 impl<T: Scalar> Builder<T> {
+    fn new(wavelengths: usize) -> Self {
+        let cumulative = Cumulative::new();
+        Self {
+            bank: SpectrumBank::new(wavelengths),
+            edges: (0..=CELLS).map(|cell| cumulative.edge(cell)).collect(),
+            known: Vec::new(),
+            known_indices: Vec::new(),
+            shapes: Vec::new(),
+            implicits: Vec::new(),
+            shading: Vec::new(),
+            lights: Vec::new(),
+            resolver: Resolver::default(),
+            reach: 0.0,
+        }
+    }
+
     /// Start of a spectrum's cell means in the bank, shared by equal spectra.
     fn spectrum(&mut self, spectrum: &Spectrum) -> u32 {
         if let Some((_, start)) = self.known.iter().find(|(s, _)| s == spectrum) {
             return *start;
         }
-        let start = self.bank.push(&cells(spectrum));
+        let start = self.bank.push(&cells::means(spectrum, &self.edges));
         self.known.push((spectrum.clone(), start));
         start
     }
 
-    /// Starts of n and k: at the grid's nodes, to be interpolated, for what refracts, and in the
-    /// middle of its cells for what only reflects.
+    /// Starts of n and k: at the lower ends of the cells, to be interpolated, for what refracts,
+    /// and in the middle of the cells for what only reflects.
     fn refractive_index(&mut self, index: &RefractiveIndex) -> [u32; 2] {
-        let shift = match index {
-            RefractiveIndex::Complex { .. } => 0.5,
-            _ => 0.0,
-        };
         if let Some((_, starts)) = self.known_indices.iter().find(|(i, _)| i == index) {
             return *starts;
         }
-        let nodes: Vec<(f64, f64)> = (0..=CELLS)
-            .map(|node| index.n_k((SHORTEST + (node as f64 + shift) / CELLS_PER_NM).min(LONGEST)))
-            .collect();
+        let nodes: Vec<(f64, f64)> = match index {
+            RefractiveIndex::Complex { .. } => self
+                .edges
+                .windows(2)
+                .map(|cell| index.n_k((cell[0] + cell[1]) / 2.0))
+                .collect(),
+            _ => self.edges.iter().map(|&nm| index.n_k(nm)).collect(),
+        };
         let n: Vec<f64> = nodes.iter().map(|nk| nk.0).collect();
         let k: Vec<f64> = nodes.iter().map(|nk| nk.1).collect();
         let starts = [self.bank.push(&n), self.bank.push(&k)];

@@ -133,8 +133,8 @@ impl Tile {
         workspace: &Workspace<T, C>,
     ) {
         let width = self.window.width();
-        for (i, request) in requests.iter().enumerate() {
-            let xyz = [0, 1, 2].map(|c| workspace.tristimulus[c][i].to_f64());
+        for (request, xyz) in requests.iter().zip(&workspace.tristimulus) {
+            let xyz = xyz.map(Scalar::to_f64);
             if xyz.iter().all(|v| v.is_finite()) {
                 let pixel = (request.y - self.window.y0) * width + request.x - self.window.x0;
                 self.pixels.add(pixel as usize, request.sample, xyz);

@@ -3,7 +3,7 @@
 use super::hash::{Keys, mix, pcg4d};
 use super::permute::permute;
 use super::{Slot, sobol};
-use crate::math::lanes::{Int, Lanes, Real};
+use crate::math::lanes::{Int, Lanes, Real, inlined};
 use crate::scene::SamplerKind;
 
 /// Which points a render uses, and how many of them a replicate may see.
@@ -175,21 +175,27 @@ impl Sequence {
         l.vectorize(
             #[inline(always)]
             || {
-                let seed = |slot: Slot, component: u32| {
-                    mix(
-                        l,
-                        id.key.plus(
-                            l.int(0x9e37_79b9u32.wrapping_mul(2 * slot as u32 + component + 1)),
-                        ),
-                    )
-                };
+                let seed = inlined(
+                    #[inline(always)]
+                    |slot: Slot, component: u32| {
+                        mix(
+                            l,
+                            id.key.plus(
+                                l.int(0x9e37_79b9u32.wrapping_mul(2 * slot as u32 + component + 1)),
+                            ),
+                        )
+                    },
+                );
                 let zero = l.real(0.0);
                 match self.kind {
                     SamplerKind::Sobol | SamplerKind::Center => {
-                        let coordinate = |dimension: usize, slot: Slot, component: u32| {
-                            let digits = sobol::digits(l, dimension, id.index, self.bits);
-                            l.uniform(sobol::scrambled(l, digits, seed(slot, component)))
-                        };
+                        let coordinate = inlined(
+                            #[inline(always)]
+                            |dimension: usize, slot: Slot, component: u32| {
+                                let digits = sobol::digits(l, dimension, id.index, self.bits);
+                                l.uniform(sobol::scrambled(l, digits, seed(slot, component)))
+                            },
+                        );
                         let pixel = if self.kind == SamplerKind::Center {
                             [l.real(0.5); 2]
                         } else {
@@ -304,7 +310,8 @@ impl Sequence {
 
     #[inline(always)]
     fn independent<L: Lanes>(&self, l: L, id: Identity<L>, slot: L::Int) -> [L::Real; 4] {
-        pcg4d(l, [id.key, id.index, slot, l.int(0x2545_f491)]).map(|bits| l.uniform(bits))
+        let [a, b, c, d] = pcg4d(l, [id.key, id.index, slot, l.int(0x2545_f491)]);
+        [l.uniform(a), l.uniform(b), l.uniform(c), l.uniform(d)]
     }
 
     #[inline(always)]

@@ -1,32 +1,40 @@
-//! Spectra resampled for the render loop: means over uniform cells.
+//! Spectra resampled for the render loop: means over cells of wavelength.
 
-use super::{NM_MIN, Spectrum, quadrature};
+use super::{Spectrum, quadrature};
 
-/// Width of a cell, nm.
-pub const CELL_NM: f64 = 0.25;
-/// Number of cells on 360–830 nm.
-pub const CELLS: usize = 1880;
-
-/// The mean of a spectrum over each cell [360 + i/4, 360 + (i + 1)/4] nm, `CELLS` numbers.
+/// The mean of a spectrum between each two neighbours of `edges` (nm, strictly increasing).
 ///
 /// Exact up to rounding for tables (a table's kink or end inside a cell included), better than
-/// 1e-12 for the smooth spectra. Zero where a table has no samples.
-pub fn cells(spectrum: &Spectrum) -> Vec<f64> {
+/// 1e-12 for the smooth spectra at cells of 1 nm or less. Zero where a table has no samples.
+pub fn means(spectrum: &Spectrum, edges: &[f64]) -> Vec<f64> {
+    let cells = edges.windows(2);
     if let Spectrum::Constant(value) = spectrum {
-        return vec![*value; CELLS];
+        return vec![*value; cells.len()];
     }
-    (0..CELLS)
-        .map(|i| {
-            let low = NM_MIN + i as f64 * CELL_NM;
+    cells
+        .map(|cell| {
+            let (low, high) = (cell[0], cell[1]);
             let [integral] =
-                quadrature::between_kinks(spectrum, low, low + CELL_NM, |nm| [spectrum.value(nm)]);
-            integral / CELL_NM
+                quadrature::between_kinks(spectrum, low, high, |nm| [spectrum.value(nm)]);
+            integral / (high - low)
         })
         .collect()
 }
 
-/// The cell that holds wavelength `nm`; wavelengths outside 360–830 nm get the nearest cell.
-pub fn cell_of(nm: f64) -> usize {
-    // The cast saturates: below the range 0, above it CELLS − 1.
-    (((nm - NM_MIN) / CELL_NM) as usize).min(CELLS - 1)
+/// The mean over [low, high] of a function that is linear between whole nanometres.
+pub fn mean_of_interpolant<const N: usize>(
+    low: f64,
+    high: f64,
+    f: impl Fn(f64) -> [f64; N],
+) -> [f64; N] {
+    let mut sum = [0.0; N];
+    let mut from = low;
+    while from < high {
+        let to = (from.floor() + 1.0).min(high);
+        for (total, part) in sum.iter_mut().zip(quadrature::gauss(from, to, &f)) {
+            *total += part;
+        }
+        from = to;
+    }
+    sum.map(|s| s / (high - low))
 }

@@ -1,42 +1,98 @@
 //! Spectra on the wavelength grid of the loop.
 //!
-//! The band 360–830 nm is cut into cells of a quarter nanometre. A *mean* spectrum holds each
-//! cell's exact mean, so that integrals against anything constant over a cell are exact; a
-//! *node* spectrum (refractive indices) holds values at the cell edges, linear between.
+//! A path carries C wavelengths: the hero, drawn by a density that follows the observer, and C − 1
+//! more at equal steps of the cumulative density (A. Wilkie et al., "Hero Wavelength Spectral
+//! Sampling", EGSR 2014). The unit interval of the cumulative density is cut into [`CELLS`] equal
+//! cells, 0.06 nm wide in the middle of the band and 1 nm at its red end; all that a path needs to
+//! look a spectrum up is its cell modulo `CELLS`/C, and the C values then stand in one row of a
+//! table. *Mean* rows hold each cell's exact mean over wavelength, so that integrals against
+//! anything constant over a cell are exact; *node* rows (refractive indices) hold values at the
+//! cells' lower ends, linear between.
 
-use crate::math::lanes::{Int, Lanes, Real, Scalar};
+use crate::math::lanes::Scalar;
 
 /// Shortest wavelength, nm.
 pub const SHORTEST: f64 = 360.0;
 /// Longest wavelength, nm.
 pub const LONGEST: f64 = 830.0;
-/// Cells per nm.
-pub const CELLS_PER_NM: f64 = 4.0;
-/// Number of cells.
-pub const CELLS: usize = 1880;
-/// Entries of one spectrum in a bank: the cells and one repeated last entry for a wavelength of
-/// exactly 830 nm and for node spectra.
-pub const STRIDE: usize = CELLS + 2;
+/// Number of cells, a multiple of every number of wavelengths.
+pub const CELLS: usize = 4096;
 
-/// Many spectra in one table.
-#[derive(Debug, Clone, Default)]
+/// Rate a of the density a/cosh²(a (λ − 538 nm))/span, nm⁻¹ (M. Radziszewski, K. Boryczko and
+/// W. Alda, "An improved technique for full spectral rendering", 2009, as in pbrt-v4 section
+/// 4.5.4).
+const RATE: f64 = 0.0072;
+/// Wavelength of the density's maximum, nm.
+const CENTRE: f64 = 538.0;
+
+/// The cumulative density and its inverse.
+#[derive(Debug, Clone, Copy)]
+pub struct Cumulative {
+    short: f64,
+    span: f64,
+}
+
+impl Default for Cumulative {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Cumulative {
+    /// The density over the whole band.
+    pub fn new() -> Self {
+        let short = libm::tanh(RATE * (CENTRE - SHORTEST));
+        let long = libm::tanh(RATE * (LONGEST - CENTRE));
+        Self {
+            short,
+            span: short + long,
+        }
+    }
+
+    /// Wavelength, nm, at cumulative density `u`: 538 − artanh(short − u span)/a.
+    pub fn wavelength(&self, u: f64) -> f64 {
+        let nm = CENTRE - libm::atanh(self.short - u * self.span) / RATE;
+        nm.clamp(SHORTEST, LONGEST)
+    }
+
+    /// Wavelength at the lower end of a cell, nm.
+    pub fn edge(&self, cell: usize) -> f64 {
+        match cell {
+            0 => SHORTEST,
+            CELLS.. => LONGEST,
+            _ => self.wavelength(cell as f64 / CELLS as f64),
+        }
+    }
+}
+
+/// Many spectra in one table of rows of `wavelengths` values.
+#[derive(Debug, Clone)]
 pub struct SpectrumBank<T> {
+    wavelengths: usize,
     values: Vec<T>,
 }
 
 impl<T: Scalar> SpectrumBank<T> {
-    /// An empty bank.
-    pub fn new() -> Self {
-        Self { values: Vec::new() }
+    /// An empty bank for paths of `wavelengths` wavelengths.
+    pub fn new(wavelengths: usize) -> Self {
+        Self {
+            wavelengths,
+            values: Vec::new(),
+        }
     }
 
-    /// Adds a spectrum given by its cell means or its nodes; returns where it starts.
+    /// Adds a spectrum: entry `cell` of `values` is its mean or node. The node after the last is
+    /// the last itself if not given. Returns the first row's number.
     pub fn push(&mut self, values: &[f64]) -> u32 {
-        let start = self.values.len();
-        self.values.extend(values.iter().map(|&v| T::from_f64(v)));
-        let last = values.last().copied().unwrap_or(0.0);
-        self.values.resize(start + STRIDE, T::from_f64(last));
-        start as u32
+        let first = self.values.len() / self.wavelengths;
+        let rows = CELLS / self.wavelengths;
+        for row in 0..=rows {
+            for j in 0..self.wavelengths {
+                let cell = (j * rows + row).min(values.len() - 1);
+                self.values.push(T::from_f64(values[cell]));
+            }
+        }
+        first as u32
     }
 
     /// Bytes held.
@@ -44,25 +100,15 @@ impl<T: Scalar> SpectrumBank<T> {
         self.values.len() * size_of::<T>()
     }
 
-    /// Entry `cell` of the spectrum at `start`; past the end the last one.
-    pub fn at(&self, start: u32, cell: usize) -> T {
-        let index = start as usize + cell.min(STRIDE - 1);
-        self.values.get(index).copied().unwrap_or_default()
-    }
-
-    /// The mean of the cell at a grid position (cells above 360 nm).
+    /// The values at a path's wavelengths: row `row` of the spectrum that starts at `first`.
     #[inline(always)]
-    pub fn mean<L: Lanes<Scalar = T>>(&self, l: L, start: L::Int, position: L::Real) -> L::Real {
-        l.gather(&self.values, start.plus(l.truncate(position)))
-    }
-
-    /// The value between nodes at a grid position.
-    #[inline(always)]
-    pub fn between<L: Lanes<Scalar = T>>(&self, l: L, start: L::Int, position: L::Real) -> L::Real {
-        let cell = l.truncate(position);
-        let index = start.plus(cell);
-        let a = l.gather(&self.values, index);
-        let b = l.gather(&self.values, index.plus(l.int(1)));
-        (position - l.to_real(cell)).mul_add(b - a, a)
+    pub fn row<const C: usize>(&self, first: u32, row: u32) -> &[T; C] {
+        let at = (first as usize + row as usize) * C;
+        // Both numbers come from the plan, and the plan filled the bank; the fallback is for the
+        // type checker.
+        match self.values.get(at..at + C).and_then(|v| v.first_chunk()) {
+            Some(values) => values,
+            None => unreachable!("a spectrum outside of the bank"),
+        }
     }
 }

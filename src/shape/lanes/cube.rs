@@ -1,7 +1,7 @@
 //! The cube [-1, 1]³ in lanes.
 
 use super::{LaneRay, LaneShape, Span, reach, slab};
-use crate::math::lanes::{Lanes, Real};
+use crate::math::lanes::{Lanes, Real, inlined};
 use crate::math::vec3::Vec3;
 
 /// Three slabs (Kay and Kajiya 1986), each crossing with its bound; the cube is hit for certain
@@ -12,7 +12,20 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     let d = shape.inverse.vector(l, ray.direction);
     let e = shape.origin_error(l, ray);
     let dd = l.splat(shape.direction_error);
-    let axis = |o_i, d_i| slab(l, o_i, d_i, e, dd, || reach(l, o, d));
+    let axis = inlined(
+        #[inline(always)]
+        |o_i, d_i| {
+            slab(
+                l,
+                o_i,
+                d_i,
+                e,
+                dd,
+                #[inline(always)]
+                || reach(l, o, d),
+            )
+        },
+    );
     let (x, y, z) = (axis(o.x, d.x), axis(o.y, d.y), axis(o.z, d.z));
     let near = x.near.max(y.near).max(z.near);
     let far = x.far.min(y.far).min(z.far);

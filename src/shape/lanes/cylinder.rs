@@ -51,7 +51,15 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
         side_miss = (side_miss & !parallel) | (parallel & outside);
     }
 
-    let caps = slab(l, o.z, d.z, e0, dd, || reach(l, o, d));
+    let caps = slab(
+        l,
+        o.z,
+        d.z,
+        e0,
+        dd,
+        #[inline(always)]
+        || reach(l, o, d),
+    );
     let near = side_near.max(caps.near);
     let far = side_far.min(caps.far);
     let latest_entry = (side_near + side_error).max(caps.near + caps.error);

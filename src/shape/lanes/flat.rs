@@ -1,7 +1,7 @@
 //! Rectangle, disk and plane in lanes: z = 0 and a test of where.
 
 use super::{LaneRay, LaneShape, Span};
-use crate::math::lanes::{Lanes, Real, Scalar};
+use crate::math::lanes::{Lanes, Real, Scalar, inlined};
 
 /// The part of z = 0 that a flat shape covers.
 pub trait Outline {
@@ -85,11 +85,14 @@ pub fn span<L: Lanes, O: Outline>(l: L, shape: &LaneShape<L::Scalar>, ray: &Lane
     let y_slope = inverse.row_dot(l, 1, ray.direction);
     let x = x_slope.mul_add(t, inverse.row_point(l, 0, ray.origin));
     let y = y_slope.mul_add(t, inverse.row_point(l, 1, ray.origin));
-    let bound = |slope: L::Real, value: L::Real| {
-        slope
-            .abs()
-            .mul_add(error, e.mul_add(l.real(2.0), value.abs() * l.real(4.0 * u)))
-    };
+    let bound = inlined(
+        #[inline(always)]
+        |slope: L::Real, value: L::Real| {
+            slope
+                .abs()
+                .mul_add(error, e.mul_add(l.real(2.0), value.abs() * l.real(4.0 * u)))
+        },
+    );
     let (inside, outside) = O::contains(l, x, y, [bound(x_slope, x), bound(y_slope, y)]);
     Span {
         near: t,
