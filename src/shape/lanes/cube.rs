@@ -10,11 +10,11 @@ use crate::math::vec3::Vec3;
 pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
     let o = shape.inverse.point(l, ray.origin);
     let d = shape.inverse.vector(l, ray.direction);
-    let e = shape.origin_error(l, ray);
-    let dd = l.splat(shape.direction_error);
     let axis = inlined(
         #[inline(always)]
-        |o_i, d_i| {
+        |i, o_i, d_i| {
+            let e = shape.origin_error(l, ray, i);
+            let dd = l.splat(shape.direction_error[i]);
             slab(
                 l,
                 o_i,
@@ -26,7 +26,7 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
             )
         },
     );
-    let (x, y, z) = (axis(o.x, d.x), axis(o.y, d.y), axis(o.z, d.z));
+    let (x, y, z) = (axis(0, o.x, d.x), axis(1, o.y, d.y), axis(2, o.z, d.z));
     let near = x.near.max(y.near).max(z.near);
     let far = x.far.min(y.far).min(z.far);
     let latest_entry = (x.near + x.error)

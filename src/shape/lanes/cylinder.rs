@@ -12,8 +12,7 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     let one = l.real(1.0);
     let o = shape.inverse.point(l, ray.origin);
     let d = shape.inverse.vector(l, ray.direction);
-    let e0 = shape.origin_error(l, ray);
-    let dd = l.splat(shape.direction_error);
+    let (e0, dd) = shape.largest_errors(l, ray, 2);
 
     let across = d.x.mul_add(d.x, d.y * d.y);
     let inverse_square = one / across;
@@ -55,8 +54,8 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
         l,
         o.z,
         d.z,
-        e0,
-        dd,
+        shape.origin_error(l, ray, 2),
+        l.splat(shape.direction_error[2]),
         #[inline(always)]
         || reach(l, o, d),
     );

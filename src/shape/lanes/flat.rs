@@ -68,32 +68,38 @@ impl Outline for Plane {
 }
 
 /// t = −o_z/d_z within (E + |t| D)/|d_z|, doubled for the higher orders while D ≤ |d_z|/4, and
-/// (x, y) within E + |t| D + |d| δt.
+/// x and y each within E + |t| D + |d| δt of their own row.
 #[inline(always)]
 pub fn span<L: Lanes, O: Outline>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
     let u = <L::Scalar as Scalar>::ROUNDOFF;
     let inverse = &shape.inverse;
     let oz = inverse.row_point(l, 2, ray.origin);
     let dz = inverse.row_dot(l, 2, ray.direction);
-    let dd = l.splat(shape.direction_error);
+    let dd = l.splat(shape.direction_error[2]);
     let reciprocal = l.real(1.0) / dz;
     let t = -(oz * reciprocal);
-    let e = t.abs().mul_add(dd, shape.origin_error(l, ray));
-    let error = (e * reciprocal.abs()).mul_add(l.real(2.0), t.abs() * l.real(4.0 * u));
+    let distance = t.abs();
+    let e = distance.mul_add(dd, shape.origin_error(l, ray, 2));
+    let error = (e * reciprocal.abs()).mul_add(l.real(2.0), distance * l.real(4.0 * u));
     let bounded = dz.abs().gt(dd * l.real(4.0));
-    let x_slope = inverse.row_dot(l, 0, ray.direction);
-    let y_slope = inverse.row_dot(l, 1, ray.direction);
-    let x = x_slope.mul_add(t, inverse.row_point(l, 0, ray.origin));
-    let y = y_slope.mul_add(t, inverse.row_point(l, 1, ray.origin));
-    let bound = inlined(
+    let coordinate = inlined(
         #[inline(always)]
-        |slope: L::Real, value: L::Real| {
-            slope
-                .abs()
-                .mul_add(error, e.mul_add(l.real(2.0), value.abs() * l.real(4.0 * u)))
+        |i: usize| {
+            let slope = inverse.row_dot(l, i, ray.direction);
+            let value = slope.mul_add(t, inverse.row_point(l, i, ray.origin));
+            let own = distance.mul_add(
+                l.splat(shape.direction_error[i]),
+                shape.origin_error(l, ray, i),
+            );
+            let bound = slope.abs().mul_add(
+                error,
+                own.mul_add(l.real(2.0), value.abs() * l.real(4.0 * u)),
+            );
+            (value, bound)
         },
     );
-    let (inside, outside) = O::contains(l, x, y, [bound(x_slope, x), bound(y_slope, y)]);
+    let ((x, x_error), (y, y_error)) = (coordinate(0), coordinate(1));
+    let (inside, outside) = O::contains(l, x, y, [x_error, y_error]);
     Span {
         near: t,
         far: t,

@@ -1,11 +1,11 @@
 //! The first rung: every shape in lanes, answering hit, miss or undecided.
 //!
 //! A ray is taken to canonical coordinates by the rounded inverse matrix. With unit roundoff u,
-//! row sums Rᵢ = Σⱼ|mᵢⱼ| and s = max|o|, the computed local origin is within
-//! E = 6u (max Rᵢ · s + max|bᵢ| + 1) and the local direction within D = 6u · max Rᵢ of the exact
-//! one in every component (four rounded coefficients and three fused operations each; the 1 pays
-//! for the shape's own constants). What follows from E and D is bounded shape by shape; a lane
-//! that a bound cannot decide is left to the certified ladder.
+//! row sums Rᵢ = Σⱼ|mᵢⱼ| and s = max|o|, component i of the computed local origin is within
+//! Eᵢ = 6u (Rᵢ s + |bᵢ| + 1) and that of the local direction within Dᵢ = 6u Rᵢ of the exact one
+//! (four rounded coefficients and three fused operations each; the 1 pays for the shape's own
+//! constants). What follows from E and D is bounded shape by shape; a lane that a bound cannot
+//! decide is left to the certified ladder.
 
 mod cube;
 mod cylinder;
@@ -66,34 +66,53 @@ pub struct LaneShape<T> {
     pub inverse: Rows<T>,
     /// Canonical coordinates → world.
     pub forward: Rows<T>,
-    /// 6u max Rᵢ.
-    pub direction_error: T,
-    /// 6u (max|bᵢ| + 1).
-    pub offset_error: T,
+    /// 6u Rᵢ.
+    pub direction_error: [T; 3],
+    /// 6u (|bᵢ| + 1).
+    pub offset_error: [T; 3],
 }
 
 impl<T: Scalar> LaneShape<T> {
     /// Rounds a placement whose inverse is given.
     pub fn new(kind: Option<ShapeKind>, forward: &Affine, inverse: &Affine) -> Self {
-        let largest = |f: &dyn Fn(&[f64; 4]) -> f64| inverse.rows.iter().map(f).fold(0.0, f64::max);
-        let row_sum = largest(&|r| r[0].abs() + r[1].abs() + r[2].abs());
-        let offset = largest(&|r| r[3].abs());
-        // One more unit roundoff in the bounds pays for rounding the bounds themselves.
+        // One more half unit roundoff in the bounds pays for rounding the bounds themselves.
         let unit = 6.5 * T::ROUNDOFF;
         Self {
             kind,
             inverse: Rows::from_f64(&inverse.rows),
             forward: Rows::from_f64(&forward.rows),
-            direction_error: T::from_f64(unit * row_sum),
-            offset_error: T::from_f64(unit * (offset + 1.0)),
+            direction_error: inverse
+                .rows
+                .map(|r| T::from_f64(unit * (r[0].abs() + r[1].abs() + r[2].abs()))),
+            offset_error: inverse.rows.map(|r| T::from_f64(unit * (r[3].abs() + 1.0))),
         }
     }
 
-    /// E for a packet of rays.
+    /// Eᵢ for a packet of rays.
     #[inline(always)]
-    fn origin_error<L: Lanes<Scalar = T>>(&self, l: L, ray: &LaneRay<L>) -> L::Real {
-        ray.extent
-            .mul_add(l.splat(self.direction_error), l.splat(self.offset_error))
+    fn origin_error<L: Lanes<Scalar = T>>(&self, l: L, ray: &LaneRay<L>, i: usize) -> L::Real {
+        ray.extent.mul_add(
+            l.splat(self.direction_error[i]),
+            l.splat(self.offset_error[i]),
+        )
+    }
+
+    /// The largest Eᵢ and Dᵢ of the first `count` components.
+    #[inline(always)]
+    fn largest_errors<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        ray: &LaneRay<L>,
+        count: usize,
+    ) -> (L::Real, L::Real) {
+        let mut direction = self.direction_error[0];
+        let mut offset = self.offset_error[0];
+        for i in 1..count {
+            direction = direction.larger(self.direction_error[i]);
+            offset = offset.larger(self.offset_error[i]);
+        }
+        let direction = l.splat(direction);
+        (ray.extent.mul_add(direction, l.splat(offset)), direction)
     }
 
     /// Where the lines meet the shape.

@@ -21,9 +21,8 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     let foot = o.along(d, foot_t);
     let squared = foot.length_squared();
     let c = l.real(1.0) - squared;
-    let e = foot_t
-        .abs()
-        .mul_add(l.splat(shape.direction_error), shape.origin_error(l, ray));
+    let (e0, dd) = shape.largest_errors(l, ray, 3);
+    let e = foot_t.abs().mul_add(dd, e0);
     let c_error = (e * e).mul_add(
         l.real(16.0),
         e.mul_add(l.real(8.0), l.real(8.0 * u)) * squared.max(l.real(1.0)),
