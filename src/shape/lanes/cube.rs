@@ -1,6 +1,6 @@
 //! The cube [-1, 1]³ in lanes.
 
-use super::{LaneRay, LaneShape, Span, reach, slab};
+use super::{LaneRay, LaneShape, LaneSurface, Span, reach, slab};
 use crate::math::lanes::{Lanes, Real, inlined};
 use crate::math::vec3::Vec3;
 
@@ -51,29 +51,47 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     }
 }
 
-/// The face is that of the largest coordinate.
+/// Which pair of faces a point is on: that of the largest coordinate.
 #[inline(always)]
-pub fn surface<L: Lanes>(l: L, local: Vec3<L::Real>) -> (Vec3<L::Real>, Vec3<L::Real>) {
+fn faces<L: Lanes>(local: Vec3<L::Real>) -> (L::Mask, L::Mask) {
     let (ax, ay, az) = (local.x.abs(), local.y.abs(), local.z.abs());
-    let one = l.real(1.0);
-    let zero = l.real(0.0);
     let on_x = ax.ge(ay) & ax.ge(az);
-    let on_y = !on_x & ay.ge(az);
-    let on_z = !on_x & !on_y;
-    let face = Vec3::new(
-        one.copysign(local.x),
-        one.copysign(local.y),
-        one.copysign(local.z),
+    (on_x, !on_x & ay.ge(az))
+}
+
+/// The foot on the face's plane.
+#[inline(always)]
+pub fn surface<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, p: Vec3<L::Real>) -> LaneSurface<L> {
+    let local = shape.inverse.point(l, p);
+    let (on_x, on_y) = faces::<L>(local);
+    let [px, py, pz] = &shape.planes;
+    let choose = inlined(
+        #[inline(always)]
+        |x, y, z| l.select(on_x, x, l.select(on_y, y, z)),
     );
-    let point = Vec3::new(
-        l.select(on_x, face.x, local.x),
-        l.select(on_y, face.y, local.y),
-        l.select(on_z, face.z, local.z),
+    let normal = Vec3::select(
+        l,
+        on_x,
+        px.normal(l),
+        Vec3::select(l, on_y, py.normal(l), pz.normal(l)),
     );
-    let normal = Vec3::new(
-        l.select(on_x, face.x, zero),
-        l.select(on_y, face.y, zero),
-        l.select(on_z, face.z, zero),
-    );
-    (point, normal)
+    let sign = l.real(1.0).copysign(choose(local.x, local.y, local.z));
+    let middle = choose(l.splat(px.middle), l.splat(py.middle), l.splat(pz.middle));
+    let half = choose(l.splat(px.half), l.splat(py.half), l.splat(pz.half));
+    LaneSurface {
+        point: px.onto(l, normal, p, half.mul_add(sign, middle)),
+        normal: normal.scale(sign),
+    }
+}
+
+/// The coordinate of the face made exact.
+#[inline(always)]
+pub fn snapped<L: Lanes>(l: L, local: Vec3<L::Real>) -> Vec3<L::Real> {
+    let (on_x, on_y) = faces::<L>(local);
+    let one = l.real(1.0);
+    Vec3::new(
+        l.select(on_x, one.copysign(local.x), local.x),
+        l.select(on_y, one.copysign(local.y), local.y),
+        l.select(on_x | on_y, local.z, one.copysign(local.z)),
+    )
 }

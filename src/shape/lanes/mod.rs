@@ -66,6 +66,8 @@ pub struct LaneShape<T> {
     pub inverse: Rows<T>,
     /// Canonical coordinates → world.
     pub forward: Rows<T>,
+    /// The planes of each canonical coordinate.
+    planes: [Planes<T>; 3],
     /// 6u Rᵢ.
     pub direction_error: [T; 3],
     /// 6u (|bᵢ| + 1).
@@ -81,6 +83,7 @@ impl<T: Scalar> LaneShape<T> {
             kind,
             inverse: Rows::from_f64(&inverse.rows),
             forward: Rows::from_f64(&forward.rows),
+            planes: inverse.rows.each_ref().map(Planes::new),
             direction_error: inverse
                 .rows
                 .map(|r| T::from_f64(unit * (r[0].abs() + r[1].abs() + r[2].abs()))),
@@ -135,26 +138,86 @@ impl<T: Scalar> LaneShape<T> {
         }
     }
 
-    /// The canonical point of a hit, moved onto the surface, and the canonical outward normal
-    /// (+z for flat shapes; not unit).
+    /// What a hit near the world point p looks like.
     #[inline(always)]
-    pub fn surface<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        local: Vec3<L::Real>,
-    ) -> (Vec3<L::Real>, Vec3<L::Real>) {
+    pub fn surface<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> LaneSurface<L> {
         match self.kind {
-            Some(ShapeKind::Sphere) => sphere::surface(l, local),
-            Some(ShapeKind::Cube) => cube::surface(l, local),
-            Some(ShapeKind::Cylinder) => cylinder::surface(l, local),
+            Some(ShapeKind::Sphere) => sphere::surface(l, self, p),
+            Some(ShapeKind::Cube) => cube::surface(l, self, p),
+            Some(ShapeKind::Cylinder) => cylinder::surface(l, self, p),
             Some(ShapeKind::Disk | ShapeKind::Rectangle | ShapeKind::Plane) | None => {
-                let zero = l.real(0.0);
-                (
-                    Vec3::new(local.x, local.y, zero),
-                    Vec3::new(zero, zero, l.real(1.0)),
-                )
+                let plane = &self.planes[2];
+                let normal = plane.normal(l);
+                LaneSurface {
+                    point: plane.onto(l, normal, p, l.splat(plane.middle)),
+                    normal,
+                }
             }
         }
+    }
+
+    /// Canonical coordinates of a point on the surface: those that are constant on a face are
+    /// exact, so that textures do not flicker between cells there.
+    #[inline(always)]
+    pub fn local<L: Lanes<Scalar = T>>(&self, l: L, point: Vec3<L::Real>) -> Vec3<L::Real> {
+        let local = self.inverse.point(l, point);
+        match self.kind {
+            Some(ShapeKind::Disk | ShapeKind::Rectangle | ShapeKind::Plane) => {
+                Vec3::new(local.x, local.y, l.real(0.0))
+            }
+            Some(ShapeKind::Cube) => cube::snapped(l, local),
+            Some(ShapeKind::Cylinder) => cylinder::snapped(l, local),
+            Some(ShapeKind::Sphere) | None => local,
+        }
+    }
+}
+
+/// A point moved onto a surface, and the unit outward normal there (+z of flat shapes).
+#[derive(Clone, Copy)]
+pub struct LaneSurface<L: Lanes> {
+    /// The point, scene units about the camera.
+    pub point: Vec3<L::Real>,
+    /// The normal.
+    pub normal: Vec3<L::Real>,
+}
+
+/// The parallel planes of one canonical coordinate: x = −1, 0, 1 are n · p = middle − half,
+/// middle, middle + half.
+#[derive(Debug, Clone, Copy)]
+pub struct Planes<T> {
+    normal: [T; 3],
+    middle: T,
+    half: T,
+}
+
+impl<T: Scalar> Planes<T> {
+    /// From the row of the inverse that computes the coordinate.
+    fn new(row: &[f64; 4]) -> Self {
+        let [x, y, z, shift] = *row;
+        let length = (x * x + y * y + z * z).sqrt();
+        Self {
+            normal: [x, y, z].map(|c| T::from_f64(c / length)),
+            middle: T::from_f64(-shift / length),
+            half: T::from_f64(1.0 / length),
+        }
+    }
+
+    #[inline(always)]
+    fn normal<L: Lanes<Scalar = T>>(&self, l: L) -> Vec3<L::Real> {
+        let [x, y, z] = self.normal;
+        Vec3::new(l.splat(x), l.splat(y), l.splat(z))
+    }
+
+    /// The foot of p on the plane n · p = level.
+    #[inline(always)]
+    fn onto<L: Lanes<Scalar = T>>(
+        &self,
+        _l: L,
+        normal: Vec3<L::Real>,
+        p: Vec3<L::Real>,
+        level: L::Real,
+    ) -> Vec3<L::Real> {
+        p.along(normal, level - normal.dot(p))
     }
 }
 

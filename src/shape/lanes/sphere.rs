@@ -1,6 +1,6 @@
 //! The unit sphere in lanes.
 
-use super::{LaneRay, LaneShape, Span};
+use super::{LaneRay, LaneShape, LaneSurface, Span};
 use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::vec3::Vec3;
 
@@ -41,9 +41,12 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     }
 }
 
-/// On the sphere, the point is its own normal.
+/// The canonical point scaled to length 1, which is also the canonical normal.
 #[inline(always)]
-pub fn surface<L: Lanes>(l: L, local: Vec3<L::Real>) -> (Vec3<L::Real>, Vec3<L::Real>) {
-    let n = local.normalized(l);
-    (n, n)
+pub fn surface<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, p: Vec3<L::Real>) -> LaneSurface<L> {
+    let local = shape.inverse.point(l, p).normalized(l);
+    LaneSurface {
+        point: shape.forward.point(l, local),
+        normal: shape.inverse.transposed(l, local).normalized(l),
+    }
 }
