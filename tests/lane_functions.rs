@@ -282,10 +282,7 @@ impl Job for Words {
                 (x ^ y, std::array::from_fn(|i| a[i] ^ b[i])),
                 (x & y, std::array::from_fn(|i| a[i] & b[i])),
                 (x | y, std::array::from_fn(|i| a[i] | b[i])),
-                (
-                    etalon::sample::sobol::reverse_bits(l, x),
-                    a.map(u32::reverse_bits),
-                ),
+                (x.reversed(), a.map(u32::reverse_bits)),
             ];
             for (k, (got, want)) in results.into_iter().enumerate() {
                 let mut stored = [0u32; 16];

@@ -2,6 +2,7 @@
 
 mod cli;
 mod film_files;
+mod fresnel;
 mod lane_functions;
 mod lane_shapes;
 mod lanes_support;
@@ -11,6 +12,6 @@ mod sampling;
 mod scene_file;
 mod shape_ladder;
 mod shape_list;
-mod spectrum;
 mod statistics_support;
 mod truths;
+mod wavelength_grid;
