@@ -129,7 +129,9 @@ fn dielectrics_are_sane_at_the_edges() {
             );
             if c == 1.0 {
                 let normal = (eta - 1.0) / (eta + 1.0);
-                assert!((r - normal * normal).abs() < 8.0 * precision.roundoff());
+                // η² − sin² is a difference from η² − 1 when η is small.
+                let allowed = 8.0 * precision.roundoff() * (1.0 + 1.0 / (eta * eta));
+                assert!((r - normal * normal).abs() < allowed, "{eta}: {r}");
             }
             // Reversing the ray: the same reflectance.
             if t > 0.0 && r < 0.9 {
@@ -161,13 +163,11 @@ fn conductors_match_the_table() {
                 for i in 0..=200 {
                     let cosine = f64::from(i) / 200.0;
                     let r = metal(precision, cosine, n, k);
-                    let most = 1.0 + 8.0 * precision.roundoff();
+                    let slack = 8.0 * precision.roundoff();
                     // Nothing at all in the way of grazing light: n = 1, k = 0 has 0/0 there.
                     let nothing = (n, k, i) == (1.0, 0.0, 0);
-                    assert!(
-                        nothing || (0.0..=most).contains(&r),
-                        "{n} {k} {cosine}: {r}"
-                    );
+                    let within = (-slack..=1.0 + slack).contains(&r);
+                    assert!(nothing || within, "{n} {k} {cosine}: {r}");
                     if i == 0 && !nothing {
                         assert!((r - 1.0).abs() < 1e-5);
                     }

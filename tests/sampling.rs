@@ -251,7 +251,7 @@ fn pixel_means(drawn: &[[f64; 5]], n: u32, column: usize, f: impl Fn(f64) -> f64
 }
 
 /// Truth for the kind of point set: independent, jittered or stratified in one dimension.
-fn promised<'a>(kind: SamplerKind, names: [&'a str; 3]) -> &'a str {
+fn promised(kind: SamplerKind, names: [&str; 3]) -> &str {
     match kind {
         SamplerKind::Independent => names[0],
         SamplerKind::Stratified => names[1],
