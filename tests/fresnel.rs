@@ -133,11 +133,12 @@ fn dielectrics_are_sane_at_the_edges() {
                 let allowed = 8.0 * precision.roundoff() * (1.0 + 1.0 / (eta * eta));
                 assert!((r - normal * normal).abs() < allowed, "{eta}: {r}");
             }
-            // Reversing the ray: the same reflectance.
-            if t > 0.0 && r < 0.9 {
+            // Reversing the ray: the same reflectance, away from where R is steep: rounding t by u
+            // moves the other cosine by t/(η² c) u ≤ 40 u there.
+            if t > 0.1 && c > 0.1 && (0.5..=2.5).contains(&eta) {
                 let back = scalar(Precision::Double, t, 1.0 / eta);
                 assert!(
-                    (back - r).abs() < 3e3 * precision.roundoff(),
+                    (back - r).abs() < 500.0 * precision.roundoff(),
                     "{c} {eta}: {back} {r}"
                 );
             }
