@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use etalon::film;
 use etalon::plan::PlanError;
+use etalon::render::bins::BinError;
 use etalon::scene::SceneError;
 
 use super::trace::RayError;
@@ -30,6 +31,9 @@ pub enum CommandError {
     /// A picture cannot be written.
     #[error("error: {0}")]
     Film(#[from] film::Error),
+    /// The spectral bins cannot be had.
+    #[error("error: --layers spectral: {0}")]
+    Bins(#[from] BinError),
     /// The crop reaches out of the picture.
     #[error(
         "error: the crop {},{},{},{} is not inside the picture of {}x{} pixels",
