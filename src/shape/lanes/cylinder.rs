@@ -1,6 +1,6 @@
 //! The capped cylinder x² + y² ≤ 1, |z| ≤ 1 in lanes.
 
-use super::{LaneRay, LaneShape, Span, reach, slab};
+use super::{LaneRay, LaneShape, LaneSurface, Span, reach, slab};
 use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 
@@ -12,8 +12,7 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     let one = l.real(1.0);
     let o = shape.inverse.point(l, ray.origin);
     let d = shape.inverse.vector(l, ray.direction);
-    let e0 = shape.origin_error(l, ray);
-    let dd = l.splat(shape.direction_error);
+    let (e0, dd) = shape.largest_errors(l, ray, 2);
 
     let across = d.x.mul_add(d.x, d.y * d.y);
     let inverse_square = one / across;
@@ -55,8 +54,8 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
         l,
         o.z,
         d.z,
-        e0,
-        dd,
+        shape.origin_error(l, ray, 2),
+        l.splat(shape.direction_error[2]),
         #[inline(always)]
         || reach(l, o, d),
     );
@@ -80,22 +79,39 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
 
 /// A cap where |z| exceeds the distance from the axis, else the side.
 #[inline(always)]
-pub fn surface<L: Lanes>(l: L, local: Vec3<L::Real>) -> (Vec3<L::Real>, Vec3<L::Real>) {
+fn on_cap<L: Lanes>(local: Vec3<L::Real>) -> (L::Mask, L::Real) {
     let radius = local.x.mul_add(local.x, local.y * local.y).sqrt();
-    let cap = local.z.abs().gt(radius);
+    (local.z.abs().gt(radius), radius)
+}
+
+/// The canonical point moved onto side or cap.
+#[inline(always)]
+pub fn surface<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, p: Vec3<L::Real>) -> LaneSurface<L> {
+    let local = shape.inverse.point(l, p);
+    let (cap, radius) = on_cap::<L>(local);
     let zero = l.real(0.0);
     let face = l.real(1.0).copysign(local.z);
     let (x, y) = (local.x / radius, local.y / radius);
-    (
-        Vec3::new(
-            l.select(cap, local.x, x),
-            l.select(cap, local.y, y),
-            l.select(cap, face, local.z),
-        ),
-        Vec3::new(
-            l.select(cap, zero, x),
-            l.select(cap, zero, y),
-            l.select(cap, face, zero),
-        ),
-    )
+    let point = Vec3::new(
+        l.select(cap, local.x, x),
+        l.select(cap, local.y, y),
+        l.select(cap, face, local.z),
+    );
+    let normal = Vec3::new(
+        l.select(cap, zero, x),
+        l.select(cap, zero, y),
+        l.select(cap, face, zero),
+    );
+    LaneSurface {
+        point: shape.forward.point(l, point),
+        normal: shape.inverse.transposed(l, normal).normalized(l),
+    }
+}
+
+/// The coordinate of a cap made exact.
+#[inline(always)]
+pub fn snapped<L: Lanes>(l: L, local: Vec3<L::Real>) -> Vec3<L::Real> {
+    let (cap, _) = on_cap::<L>(local);
+    let face = l.real(1.0).copysign(local.z);
+    Vec3::new(local.x, local.y, l.select(cap, face, local.z))
 }

@@ -67,33 +67,35 @@ impl Outline for Plane {
     }
 }
 
-/// t = −o_z/d_z within (E + |t| D)/|d_z|, doubled for the higher orders while D ≤ |d_z|/4, and
-/// (x, y) within E + |t| D + |d| δt.
+/// t = −o_z/d_z within 2 (E_z + |t| D_z)/|d_z| + 4u|t| (first order, doubled for the rest while
+/// D_z ≤ |d_z|/4); x and y within |d| δt + 2 (E + |t| D) + 4u of the larger of their rows, where
+/// 4u stands for 4u|x|: it only matters where |x| is about 1.
 #[inline(always)]
 pub fn span<L: Lanes, O: Outline>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
     let u = <L::Scalar as Scalar>::ROUNDOFF;
+    let two = l.real(2.0);
     let inverse = &shape.inverse;
     let oz = inverse.row_point(l, 2, ray.origin);
     let dz = inverse.row_dot(l, 2, ray.direction);
-    let dd = l.splat(shape.direction_error);
+    let z_error = l.splat(shape.direction_error[2]);
     let reciprocal = l.real(1.0) / dz;
     let t = -(oz * reciprocal);
-    let e = t.abs().mul_add(dd, shape.origin_error(l, ray));
-    let error = (e * reciprocal.abs()).mul_add(l.real(2.0), t.abs() * l.real(4.0 * u));
-    let bounded = dz.abs().gt(dd * l.real(4.0));
-    let x_slope = inverse.row_dot(l, 0, ray.direction);
-    let y_slope = inverse.row_dot(l, 1, ray.direction);
-    let x = x_slope.mul_add(t, inverse.row_point(l, 0, ray.origin));
-    let y = y_slope.mul_add(t, inverse.row_point(l, 1, ray.origin));
-    let bound = inlined(
+    let distance = t.abs();
+    let e = distance.mul_add(z_error, shape.origin_error(l, ray, 2)) * two;
+    let error = e.mul_add(reciprocal.abs(), distance * l.real(4.0 * u));
+    let bounded = dz.abs().gt(z_error * l.real(4.0));
+    let (e, d) = shape.largest_errors(l, ray, 2);
+    let across = distance.mul_add(d, e).mul_add(two, l.real(4.0 * u));
+    let coordinate = inlined(
         #[inline(always)]
-        |slope: L::Real, value: L::Real| {
-            slope
-                .abs()
-                .mul_add(error, e.mul_add(l.real(2.0), value.abs() * l.real(4.0 * u)))
+        |i: usize| {
+            let slope = inverse.row_dot(l, i, ray.direction);
+            let value = slope.mul_add(t, inverse.row_point(l, i, ray.origin));
+            (value, slope.abs().mul_add(error, across))
         },
     );
-    let (inside, outside) = O::contains(l, x, y, [bound(x_slope, x), bound(y_slope, y)]);
+    let ((x, x_error), (y, y_error)) = (coordinate(0), coordinate(1));
+    let (inside, outside) = O::contains(l, x, y, [x_error, y_error]);
     Span {
         near: t,
         far: t,

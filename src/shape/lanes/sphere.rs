@@ -1,6 +1,6 @@
 //! The unit sphere in lanes.
 
-use super::{LaneRay, LaneShape, Span};
+use super::{LaneRay, LaneShape, LaneSurface, Span};
 use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::vec3::Vec3;
 
@@ -21,9 +21,8 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     let foot = o.along(d, foot_t);
     let squared = foot.length_squared();
     let c = l.real(1.0) - squared;
-    let e = foot_t
-        .abs()
-        .mul_add(l.splat(shape.direction_error), shape.origin_error(l, ray));
+    let (e0, dd) = shape.largest_errors(l, ray, 3);
+    let e = foot_t.abs().mul_add(dd, e0);
     let c_error = (e * e).mul_add(
         l.real(16.0),
         e.mul_add(l.real(8.0), l.real(8.0 * u)) * squared.max(l.real(1.0)),
@@ -42,9 +41,12 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     }
 }
 
-/// On the sphere, the point is its own normal.
+/// The canonical point scaled to length 1, which is also the canonical normal.
 #[inline(always)]
-pub fn surface<L: Lanes>(l: L, local: Vec3<L::Real>) -> (Vec3<L::Real>, Vec3<L::Real>) {
-    let n = local.normalized(l);
-    (n, n)
+pub fn surface<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, p: Vec3<L::Real>) -> LaneSurface<L> {
+    let local = shape.inverse.point(l, p).normalized(l);
+    LaneSurface {
+        point: shape.forward.point(l, local),
+        normal: shape.inverse.transposed(l, local).normalized(l),
+    }
 }
