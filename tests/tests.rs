@@ -1,6 +1,7 @@
 //! The test suite, one binary.
 
 mod cli;
+mod cli_render;
 mod film_files;
 mod fresnel;
 mod lane_functions;
