@@ -13,6 +13,7 @@ mod sampling;
 mod scene_file;
 mod shape_ladder;
 mod shape_list;
+mod spectrum;
 mod statistics_support;
 mod truths;
 mod wavelength_grid;
