@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use etalon::film;
 use etalon::plan::PlanError;
+use etalon::render::bins::BinError;
 use etalon::scene::SceneError;
 
 use super::trace::RayError;
@@ -30,6 +31,9 @@ pub enum CommandError {
     /// A picture cannot be written.
     #[error("error: {0}")]
     Film(#[from] film::Error),
+    /// The spectral bins cannot be had.
+    #[error("error: --layers spectral: {0}")]
+    Bins(#[from] BinError),
     /// The crop reaches out of the picture.
     #[error(
         "error: the crop {},{},{},{} is not inside the picture of {}x{} pixels",
@@ -85,7 +89,7 @@ pub enum CommandError {
     /// The result could not be written.
     #[error("error: cannot write the output: {0}")]
     Output(io::Error),
-    /// Not part of this build.
-    #[error("error: {0} is not available yet")]
-    NotAvailable(&'static str),
+    /// An argument that does not fit the scene.
+    #[error("error: {0}")]
+    Arguments(String),
 }

@@ -11,8 +11,8 @@ use std::io::Write as _;
 use std::path::Path;
 
 use etalon::film::{exr, png, whole};
-use etalon::render::tile::Instructions;
-use etalon::render::{Request, pass, render};
+use etalon::render::Instructions;
+use etalon::render::{Request, dispatch, render, render_binned};
 use etalon::scene;
 use rayon::ThreadPool;
 
@@ -33,7 +33,8 @@ pub fn run(arguments: &Render) -> Result<Answer, CommandError> {
     let threads = threads(arguments)?;
     progress::listen();
     for job in &jobs {
-        carry_out(arguments, job, &threads, instructions)?;
+        let report = threads.install(|| carry_out(arguments, job, instructions))?;
+        say(&report)?;
         if progress::interrupted() {
             break;
         }
@@ -76,16 +77,15 @@ fn threads(arguments: &Render) -> Result<ThreadPool, CommandError> {
 /// The instruction set asked for, if this machine has it.
 fn instructions(asked: values::Instructions) -> Result<Instructions, CommandError> {
     let name = asked.name();
-    pass::instructions(name).ok_or(CommandError::Instructions(name.unwrap_or("known")))
+    dispatch::instructions(name).ok_or(CommandError::Instructions(name.unwrap_or("known")))
 }
 
-/// Plans, renders, writes and reports one picture.
+/// Renders and writes one picture, on the threads of the current pool; the answer is the report.
 fn carry_out(
     arguments: &Render,
     job: &Job,
-    threads: &ThreadPool,
     instructions: Instructions,
-) -> Result<(), CommandError> {
+) -> Result<String, CommandError> {
     if !arguments.quiet && !job.plan.left_out.is_empty() {
         let names = job.plan.left_out.join(", ");
         tell(&format!("note: light left out: {names}"));
@@ -97,18 +97,21 @@ fn carry_out(
         instructions,
     };
     let mut watch = Watch::new(job, !arguments.quiet);
-    let rendered = threads.install(|| render(&job.plan, &request, &mut watch));
+    let rendered = match &job.bins {
+        Some(grid) => render_binned(&job.plan, &request, grid, &mut watch),
+        None => render(&job.plan, &request, &mut watch),
+    };
     watch.finish();
     let outcome = report::Outcome {
         rendered: &rendered,
         interrupted: progress::interrupted(),
     };
-    let picture = threads.install(|| picture::assemble(arguments, job, &outcome, instructions))?;
+    let picture = picture::assemble(arguments, job, &outcome, instructions)?;
     exr::write(&job.output, &picture)?;
     if let (Some(preview), Some(rgb)) = (&job.preview, picture.rgb()) {
         png::write_preview(preview, picture.width, picture.height, &rgb)?;
     }
-    say(&report::line(arguments, job, &outcome))
+    Ok(report::lines(arguments, job, &outcome))
 }
 
 /// Lines on stdout.

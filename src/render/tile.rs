@@ -1,11 +1,13 @@
 //! Tiles: the unit of work of one thread.
 
+use super::bins::Bins;
+use super::dispatch::{Instructions, Runs};
 use crate::film::pixels::Pixels;
 use crate::integrate::chunk::{self, CHUNK, Workspace};
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::intersect::Rungs;
 use crate::integrate::model::Model;
-use crate::math::lanes::{Double, Lanes, Scalar, Single};
+use crate::math::lanes::Scalar;
 use crate::sample::sequence::Replicates;
 
 /// Edge of a tile in pixels.
@@ -64,6 +66,8 @@ pub struct Tile {
     pub window: Window,
     /// Its sums, row by row.
     pub pixels: Pixels,
+    /// Its spectral sums, where they are wanted.
+    pub bins: Option<Bins>,
     /// Which arithmetic decided its rays.
     pub rungs: Rungs,
     /// Sum and sum of squares of the luminance beyond `max_depth`, by sample.
@@ -80,6 +84,7 @@ impl Tile {
         Self {
             window,
             pixels: Pixels::new(window.pixels(), replicates),
+            bins: None,
             rungs: Rungs::default(),
             beyond: chunk::Beyond::default(),
             not_a_number: 0,
@@ -88,17 +93,18 @@ impl Tile {
     }
 
     /// Adds samples `from .. to` of every pixel.
-    #[inline(always)]
-    fn add<L: Lanes, const C: usize>(
+    pub fn add<T: Runs, const C: usize>(
         &mut self,
-        l: L,
-        model: &Model<L::Scalar>,
-        spectrometer: &Spectrometer<L::Scalar>,
+        level: Instructions,
+        scene: &(Model<T>, Spectrometer<T>),
         from: u32,
         to: u32,
-        workspace: &mut Workspace<L::Scalar, C>,
-        requests: &mut Vec<chunk::Request>,
+        worker: &mut Worker<T, C>,
     ) {
+        let Worker {
+            workspace,
+            requests,
+        } = worker;
         workspace.rungs = Rungs::default();
         workspace.beyond = chunk::Beyond::default();
         let width = self.window.width();
@@ -119,7 +125,7 @@ impl Tile {
                     (pixel, sample) = (pixel + 1, from);
                 }
             }
-            chunk::render(l, model, spectrometer, requests, workspace);
+            T::chunk(level, scene, requests, workspace);
             self.collect(requests, workspace);
         }
         self.rungs = self.rungs.joined(workspace.rungs);
@@ -133,11 +139,15 @@ impl Tile {
         workspace: &Workspace<T, C>,
     ) {
         let width = self.window.width();
-        for (request, xyz) in requests.iter().zip(&workspace.tristimulus) {
+        for (slot, (request, xyz)) in requests.iter().zip(&workspace.tristimulus).enumerate() {
             let xyz = xyz.map(Scalar::to_f64);
             if xyz.iter().all(|v| v.is_finite()) {
                 let pixel = (request.y - self.window.y0) * width + request.x - self.window.x0;
                 self.pixels.add(pixel as usize, request.sample, xyz);
+                if let Some(bins) = &mut self.bins {
+                    let rows = &workspace.rows;
+                    bins.add(pixel as usize, &rows.radiance[slot], rows.row[slot]);
+                }
             } else {
                 self.not_a_number += 1;
                 self.first_not_a_number.get_or_insert(*request);
@@ -155,87 +165,3 @@ where
     workspace: Workspace<T, C>,
     requests: Vec<chunk::Request>,
 }
-
-/// A scalar whose lanes every instruction set can run.
-pub trait Runs: Scalar {
-    /// Adds samples `from .. to` of every pixel to a tile, on the given instruction set.
-    fn run<const C: usize>(
-        level: Instructions,
-        scene: &(Model<Self>, Spectrometer<Self>),
-        tile: &mut Tile,
-        from: u32,
-        to: u32,
-        worker: &mut Worker<Self, C>,
-    );
-}
-
-/// The instruction sets that a compiled copy of the loop exists for.
-#[derive(Debug, Clone, Copy)]
-pub enum Instructions {
-    /// x86-64 with AVX-512 (Ice Lake and later).
-    #[cfg(target_arch = "x86_64")]
-    Avx512(fearless_simd::Avx512),
-    /// x86-64 with AVX2 and FMA.
-    #[cfg(target_arch = "x86_64")]
-    Avx2(fearless_simd::Avx2),
-    /// Any x86-64.
-    #[cfg(target_arch = "x86_64")]
-    Sse2(fearless_simd::Sse2),
-    /// Arm with Neon.
-    #[cfg(target_arch = "aarch64")]
-    Neon(fearless_simd::Neon),
-    /// No vector unit that is known.
-    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-    Fallback(fearless_simd::Fallback),
-}
-
-macro_rules! runs {
-    ($scalar:ty, $lanes:ident) => {
-        impl Runs for $scalar {
-            fn run<const C: usize>(
-                level: Instructions,
-                scene: &(Model<Self>, Spectrometer<Self>),
-                tile: &mut Tile,
-                from: u32,
-                to: u32,
-                worker: &mut Worker<Self, C>,
-            ) {
-                use fearless_simd::Simd;
-                macro_rules! on {
-                    ($simd:expr) => {{
-                        let simd = $simd;
-                        simd.vectorize(
-                            #[inline(always)]
-                            || {
-                                tile.add(
-                                    $lanes(simd),
-                                    &scene.0,
-                                    &scene.1,
-                                    from,
-                                    to,
-                                    &mut worker.workspace,
-                                    &mut worker.requests,
-                                )
-                            },
-                        )
-                    }};
-                }
-                match level {
-                    #[cfg(target_arch = "x86_64")]
-                    Instructions::Avx512(simd) => on!(simd),
-                    #[cfg(target_arch = "x86_64")]
-                    Instructions::Avx2(simd) => on!(simd),
-                    #[cfg(target_arch = "x86_64")]
-                    Instructions::Sse2(simd) => on!(simd),
-                    #[cfg(target_arch = "aarch64")]
-                    Instructions::Neon(simd) => on!(simd),
-                    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-                    Instructions::Fallback(simd) => on!(simd),
-                }
-            }
-        }
-    };
-}
-
-runs!(f32, Single);
-runs!(f64, Double);

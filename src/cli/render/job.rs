@@ -2,15 +2,17 @@
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use etalon::plan::Plan;
+use etalon::render::bins::BinGrid;
 use etalon::render::tile::Window;
 use etalon::scene::{self, SamplerKind, Scene};
 
 use super::super::args::Render;
 use super::super::error::CommandError;
 use super::super::values::Crop;
-use super::{is_stream, memory, probe};
+use super::{is_stream, layers, memory, probe};
 
 /// Samples a pixel at most where only the time is limited: as many as the samplers' points.
 const MOST_SAMPLES: u32 = 1 << 24;
@@ -23,6 +25,8 @@ pub struct Job {
     pub plan: Plan,
     /// The pixels wanted.
     pub window: Window,
+    /// The spectral bins wanted.
+    pub bins: Option<Arc<BinGrid>>,
     /// The OpenEXR file.
     pub output: PathBuf,
     /// The preview beside it; none beside a device or pipe.
@@ -40,16 +44,19 @@ impl Job {
             scene.image.spp = MOST_SAMPLES;
         }
         let window = window(scene.image.size, arguments.crop)?;
-        memory::check(arguments, &scene, window)?;
+        let bins = layers::bins(&arguments.layers)?;
         let plan = Plan::new(&scene, arguments.plan.is_full())?;
         let (output, preview) = paths(arguments, panel)?;
-        Ok(Self {
+        let job = Self {
             scene,
             plan,
             window,
+            bins,
             output,
             preview,
-        })
+        };
+        memory::check(arguments, &job)?;
+        Ok(job)
     }
 
     /// Checks that both files can be written, before there is anything to lose.

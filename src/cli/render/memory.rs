@@ -1,38 +1,33 @@
 //! Whether a picture fits into memory, before it is begun.
 
-use etalon::render::tile::Window;
-use etalon::scene::Scene;
+use etalon::film::pixels::{Estimate, Pixels};
 
 use super::super::args::Render;
 use super::super::error::CommandError;
+use super::job::Job;
 use super::layers;
 
 /// Assumed where the system does not tell how much there is: what any machine has.
 const UNKNOWN: u64 = 1 << 32;
+/// R, G, B, their standard errors, and the count of samples.
+const CHANNELS: usize = 7;
 
-/// Bytes a pixel needs: its sums, an estimate made of them, and what goes to the file, which the
-/// writer copies once.
-fn bytes_per_pixel(arguments: &Render, scene: &Scene) -> u64 {
-    let slots = u64::from(scene.image.replicates.unwrap_or(8));
-    let bins = layers::bin_count(&arguments.layers) as u64;
-    let sums = slots * 24 + bins * 8;
-    let estimate = 48;
-    let channels = 7 + layers::channel_count(&arguments.layers) as u64 + bins;
-    sums + estimate + 2 * 4 * channels
-}
-
-/// An estimate of the bytes that a render will hold at its end.
-pub fn estimate(arguments: &Render, scene: &Scene, window: Window) -> u64 {
-    let pixels = u64::from(window.width()) * u64::from(window.height());
-    pixels.saturating_mul(bytes_per_pixel(arguments, scene))
+/// Bytes a pixel needs at the end: its sums, the estimate made of them, and what goes to the
+/// file, of which the writer makes a copy.
+fn bytes_per_pixel(arguments: &Render, job: &Job) -> usize {
+    let bins = job.bins.as_ref().map_or(0, |grid| grid.centres().len());
+    let sums = Pixels::bytes_per_pixel(job.plan.choices.replicates) + bins * size_of::<f64>();
+    let channels = CHANNELS + layers::channel_count(&arguments.layers) + bins;
+    sums + size_of::<Estimate>() + 2 * channels * size_of::<f32>()
 }
 
 /// Checks that there is room.
 ///
 /// # Errors
 /// [`CommandError::Memory`] when more is needed than the system says it can give.
-pub fn check(arguments: &Render, scene: &Scene, window: Window) -> Result<(), CommandError> {
-    let needed = estimate(arguments, scene, window);
+pub fn check(arguments: &Render, job: &Job) -> Result<(), CommandError> {
+    let pixels = u64::from(job.window.width()) * u64::from(job.window.height());
+    let needed = pixels.saturating_mul(bytes_per_pixel(arguments, job) as u64);
     let available = available().unwrap_or(UNKNOWN);
     if needed > available {
         return Err(CommandError::Memory { needed, available });

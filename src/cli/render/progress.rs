@@ -4,10 +4,12 @@ use std::io::IsTerminal;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
+use etalon::film::whole;
 use etalon::render::Progress;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 
 use super::job::Job;
+use super::report::percent;
 
 /// How often the user has asked to stop.
 static STOPS: AtomicU32 = AtomicU32::new(0);
@@ -20,6 +22,7 @@ pub fn listen() {
     // Without a handler Ctrl-C ends the program at once, as ever.
     let _ = ctrlc::set_handler(|| {
         if STOPS.fetch_add(1, Ordering::Relaxed) > 0 {
+            let _kept_until_the_end = whole::abandon();
             std::process::exit(ENDED_BY_INTERRUPT);
         }
     });
@@ -71,10 +74,7 @@ impl Progress for Watch {
             let rate = f64::from(done) * self.pixels / seconds;
             let left = seconds * f64::from(wanted - done) / f64::from(done);
             let left = HumanDuration(Duration::try_from_secs_f64(left).unwrap_or(Duration::MAX));
-            let error = error.map_or_else(
-                || "unknown".to_owned(),
-                |error| format!("{:.3} %", 100.0 * error),
-            );
+            let error = error.map_or_else(|| "unknown".to_owned(), percent);
             bar.set_position(done.into());
             bar.set_message(format!(
                 "{:.2} M samples/s  {left:#} left  standard error {error}",

@@ -25,7 +25,7 @@ impl Outcome<'_> {
 }
 
 /// The lines on stdout: what was measured.
-pub fn line(arguments: &Render, job: &Job, outcome: &Outcome<'_>) -> String {
+pub fn lines(arguments: &Render, job: &Job, outcome: &Outcome<'_>) -> String {
     let rendered = outcome.rendered;
     let mut text = format!("{}: ", job.output.display());
     if outcome.interrupted && rendered.samples < job.scene.image.spp {
@@ -43,9 +43,9 @@ pub fn line(arguments: &Render, job: &Job, outcome: &Outcome<'_>) -> String {
         let share = rendered.cut_off();
         let _ = write!(
             text,
-            "; cut off by max_depth {:.4} % ± {:.4} %",
-            100.0 * share.value,
-            100.0 * share.standard_error
+            "; cut off by max_depth {} ± {}",
+            percent(share.value),
+            percent(share.standard_error)
         );
     }
     let _ = write!(text, "; {} NaN", rendered.not_a_number);
@@ -70,10 +70,24 @@ fn luminance(rendered: &Rendered) -> String {
     if mean.standard_error.is_nan() {
         return format!("{:.6}, standard error unknown with 1 replicate", mean.value);
     }
-    let relative = mean.relative_error().map_or_else(String::new, |relative| {
-        format!(" ({:.3} %)", 100.0 * relative)
-    });
+    let relative = mean
+        .relative_error()
+        .map_or_else(String::new, |relative| format!(" ({})", percent(relative)));
     format!("{:.6} ± {:.2e}{relative}", mean.value, mean.standard_error)
+}
+
+/// A share as a percentage with three significant digits.
+pub fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent == 0.0 {
+        return "0 %".to_owned();
+    }
+    let decimals = 2.0 - percent.abs().log10().floor();
+    if (0.0..7.0).contains(&decimals) {
+        format!("{percent:.*} %", decimals as usize)
+    } else {
+        format!("{percent:.2e} %")
+    }
 }
 
 /// The command that follows the first sample that was not a number.
