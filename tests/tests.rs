@@ -3,6 +3,7 @@
 mod cli;
 mod cli_render;
 mod film_files;
+mod fresnel;
 mod lane_functions;
 mod lane_shapes;
 mod lanes_support;
@@ -15,3 +16,4 @@ mod shape_list;
 mod spectrum;
 mod statistics_support;
 mod truths;
+mod wavelength_grid;
