@@ -119,9 +119,7 @@ pub fn surfaces<L: Lanes>(
                     {
                         let light = &model.lights[index as usize];
                         let chosen = l.splat(light.probability)
-                            * light
-                                .shape
-                                .pdf(l, ray.origin, ray.direction, nearest.t, normal);
+                            * light.shape.pdf(l, ray.origin, ray.direction, normal);
                         let weight = power_weight(l, arrival.pdf, chosen);
                         let weighted = emits & !arrival.specular;
                         out.emission_weight = l.select(weighted, weight, out.emission_weight);

@@ -117,9 +117,9 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Absolute value.
     fn abs(self) -> Self;
-    /// The smaller; the other operand where one is NaN.
+    /// The smaller; the other operand where one is NaN; zero is positive.
     fn min(self, other: Self) -> Self;
-    /// The larger; the other operand where one is NaN.
+    /// The larger; the other operand where one is NaN; zero is positive.
     fn max(self, other: Self) -> Self;
     /// Largest integer not above.
     fn floor(self) -> Self;
@@ -308,11 +308,13 @@ macro_rules! real_impl {
             }
             #[inline(always)]
             fn min(self, other: Self) -> Self {
-                self.min_precise(other)
+                // Which of two unlike zeros comes out depends on the instruction set: + 0 makes
+                // either positive and changes nothing else.
+                self.min_precise(other) + 0.0
             }
             #[inline(always)]
             fn max(self, other: Self) -> Self {
-                self.max_precise(other)
+                self.max_precise(other) + 0.0
             }
             #[inline(always)]
             fn floor(self) -> Self {

@@ -4,8 +4,8 @@ use super::{LaneRay, LaneShape, LaneSurface, Span, reach, slab};
 use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 
-/// The side as a circle about the foot of the perpendicular in the plane (as for the sphere, with
-/// √2 in place of √3), the caps as a slab.
+/// The side as a circle about the foot of the perpendicular in the plane (bounds as for the
+/// sphere, with √2 in place of √3), the caps as a slab.
 #[inline(always)]
 pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
     let u = <L::Scalar as Scalar>::ROUNDOFF;
@@ -22,14 +22,14 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     let squared = fx.mul_add(fx, fy * fy);
     let c = one - squared;
     let e = foot_t.abs().mul_add(dd, e0);
-    let c_error = (e * e).mul_add(
-        l.real(16.0),
-        e.mul_add(l.real(8.0), l.real(8.0 * u)) * squared.max(one),
-    );
+    let q = dd * inverse_length;
+    let relative = (q * q).mul_add(l.real(64.0), e.mul_add(l.real(8.0), l.real(8.0 * u)));
+    let c_error = (e * e).mul_add(l.real(16.0), relative * squared.max(one));
     let root = c.max(l.real(0.0)).sqrt();
     let half = root * inverse_length;
-    let mut side_error = (c_error / root + e * l.real(4.0))
-        .mul_add(inverse_length, (foot_t.abs() + half) * l.real(8.0 * u));
+    let along = q.mul_add(l.real(6.0), e * l.real(4.0));
+    let mut side_error =
+        (c_error / root + along).mul_add(inverse_length, (foot_t.abs() + half) * l.real(8.0 * u));
     let mut side_near = foot_t - half;
     let mut side_far = foot_t + half;
     let mut side_hit = c.gt(c_error);
@@ -37,10 +37,11 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     // Along the axis the relative error of the direction across it is unbounded.
     let parallel = !across.sqrt().gt(dd * l.real(8.0));
     if parallel.any() {
-        let drift = (across.sqrt() + dd * l.real(2.0)).mul_add(reach(l, o, d), e0 * l.real(2.0))
+        let drift = (across.sqrt() + dd * l.real(2.0))
+            .mul_add(reach(l, o, d, e0), e0 * l.real(2.0))
             * l.real(1.0 + 1e-6);
         let radius = o.x.mul_add(o.x, o.y * o.y).sqrt();
-        let far = l.real(1e30);
+        let far = l.real(f64::INFINITY);
         side_near = l.select(parallel, -far, side_near);
         side_far = l.select(parallel, far, side_far);
         side_error = l.select(parallel, l.real(0.0), side_error);
@@ -57,7 +58,7 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
         shape.origin_error(l, ray, 2),
         l.splat(shape.direction_error[2]),
         #[inline(always)]
-        || reach(l, o, d),
+        || reach(l, o, d, e0),
     );
     let near = side_near.max(caps.near);
     let far = side_far.min(caps.far);

@@ -1,7 +1,7 @@
 //! Rectangle, disk and plane in lanes: z = 0 and a test of where.
 
 use super::{LaneRay, LaneShape, Span};
-use crate::math::lanes::{Lanes, Real, Scalar, inlined};
+use crate::math::lanes::{Lanes, Real, Scalar};
 
 /// The part of z = 0 that a flat shape covers.
 pub trait Outline {

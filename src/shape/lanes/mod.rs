@@ -267,7 +267,7 @@ fn slab<L: Lanes>(
         let drift = (d.abs() + dd).mul_add(reach(), e) * l.real(1.0 + 1e-6);
         let inside = parallel & (o.abs() + drift).lt(one);
         let outside = parallel & (o.abs() - drift).gt(one);
-        let far = l.real(1e30);
+        let far = l.real(f64::INFINITY);
         slab.near = l.select(parallel, -far, slab.near);
         slab.far = l.select(parallel, far, slab.far);
         slab.error = l.select(parallel, l.real(0.0), slab.error);
@@ -277,9 +277,11 @@ fn slab<L: Lanes>(
     slab
 }
 
-/// Farthest |t| at which a line can be inside the canonical box: (|o|₁ + 3)/max|dᵢ|, doubled for
-/// the errors of o and d.
+/// Farthest |t| at which a line can be inside the canonical box: (|o|₁ + e + 3)/max|dᵢ|, where o
+/// is within `e`, doubled for the errors of d: those halve max|dᵢ| at most, or else they are
+/// larger than half of it and the drift |dᵢ| t of every axis is bounded all the same.
 #[inline(always)]
-fn reach<L: Lanes>(l: L, o: Vec3<L::Real>, d: Vec3<L::Real>) -> L::Real {
-    (o.x.abs() + o.y.abs() + o.z.abs() + l.real(3.0)) * l.real(2.0) / d.max_abs()
+fn reach<L: Lanes>(l: L, o: Vec3<L::Real>, d: Vec3<L::Real>, e: L::Real) -> L::Real {
+    let sum = o.x.abs() + o.y.abs() + o.z.abs();
+    (sum + (e + l.real(3.0))) * l.real(2.0) / d.max_abs()
 }
