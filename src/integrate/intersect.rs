@@ -110,7 +110,7 @@ fn candidate<L: Lanes>(
 
 /// One lane of a vector as f64.
 #[inline(always)]
-fn lane_vector<L: Lanes>(l: L, v: crate::math::vec3::Vec3<L::Real>, i: usize) -> DVec3 {
+pub fn lane_vector<L: Lanes>(l: L, v: crate::math::vec3::Vec3<L::Real>, i: usize) -> DVec3 {
     DVec3::new(
         l.lane(v.x, i).to_f64(),
         l.lane(v.y, i).to_f64(),

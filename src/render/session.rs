@@ -6,8 +6,9 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use super::bins::{BinGrid, Bins};
+use super::dispatch::Instructions;
 use super::pass;
-use super::tile::{Instructions, Tile, Window};
+use super::tile::{Tile, Window};
 use crate::film::pixels::{Estimate, to_rgb};
 use crate::integrate::chunk;
 use crate::integrate::intersect::Rungs;
