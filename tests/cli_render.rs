@@ -424,16 +424,17 @@ mod interrupts {
             .stdout(Stdio::piped())
             .spawn()
             .unwrap();
-        let status = format!("/proc/{}/status", child.id());
-        loop {
-            let text = std::fs::read_to_string(&status).unwrap();
-            let caught = text.lines().find_map(|line| line.strip_prefix("SigCgt:"));
-            // Bit 1 is signal 2, SIGINT.
-            if u64::from_str_radix(caught.unwrap().trim(), 16).unwrap() & 2 != 0 {
-                return child;
-            }
+        while !listens(child.id()) {
             std::thread::sleep(Duration::from_millis(1));
         }
+        child
+    }
+
+    /// Whether a process has a handler of SIGINT, signal 2 and so bit 1.
+    fn listens(id: u32) -> bool {
+        let text = std::fs::read_to_string(format!("/proc/{id}/status")).unwrap();
+        let caught = text.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+        u64::from_str_radix(caught.unwrap().trim(), 16).unwrap() & 2 != 0
     }
 
     fn interrupt(child: &Child) {
