@@ -7,3 +7,4 @@ mod scene_file;
 mod shape_ladder;
 mod shape_list;
 mod spectrum;
+mod truths;
