@@ -42,7 +42,8 @@ pub fn decade(rng: &mut impl Rng, from: f64, to: f64) -> f64 {
     libm::exp10(rng.random_range(from..to))
 }
 
-fn matrix(rng: &mut impl Rng) -> Affine {
+/// A random transform, of any scale and condition.
+pub fn matrix(rng: &mut impl Rng) -> Affine {
     let linear = match rng.random_range(0..4) {
         0 => DMat3::IDENTITY,
         1 => {
@@ -70,7 +71,7 @@ fn matrix(rng: &mut impl Rng) -> Affine {
 }
 
 /// A canonical point where answers change: a corner, an edge, a rim, a silhouette, a face.
-fn critical_point(rng: &mut impl Rng) -> DVec3 {
+pub fn critical_point(rng: &mut impl Rng) -> DVec3 {
     let mut p = cubed(rng);
     match rng.random_range(0..3) {
         0 => {

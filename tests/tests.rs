@@ -1,10 +1,17 @@
 //! The test suite, one binary.
 
 mod cli;
+mod cli_render;
 mod film_files;
+mod lane_functions;
+mod lane_shapes;
+mod lanes_support;
+mod lights;
 mod oracle_primitives;
+mod sampling;
 mod scene_file;
 mod shape_ladder;
 mod shape_list;
 mod spectrum;
+mod statistics_support;
 mod truths;

@@ -10,6 +10,7 @@ use crate::math::vec3::Vec3;
 use crate::sample::sequence::CameraSample;
 use crate::sample::warp::square_to_disk;
 use crate::scene::{Camera, Projection};
+use crate::shape::Ray;
 
 /// The camera's orthonormal axes in world space: right, up, forward.
 pub fn axes(camera: &Camera) -> [DVec3; 3] {
@@ -28,6 +29,27 @@ pub fn pixel_size(projection: &Projection, height: u32) -> f64 {
         Projection::Orthographic { height } => height,
     };
     extent / f64::from(height)
+}
+
+/// The ray through the centre of pixel (x, y), y downwards, in world coordinates: from the pinhole
+/// or the centre of the lens, whose ray goes straight on, or parallel to the view axis. Its
+/// direction has the component 1 along the view axis, so t is the depth along that axis.
+pub fn centre_ray(camera: &Camera, size: [u32; 2], [x, y]: [u32; 2]) -> Ray {
+    let [right, up, forward] = axes(camera);
+    let pixel = pixel_size(&camera.projection, size[1]);
+    let across = (f64::from(x) + 0.5 - f64::from(size[0]) / 2.0) * pixel;
+    let above = (f64::from(size[1]) / 2.0 - (f64::from(y) + 0.5)) * pixel;
+    let in_plane = right * across + up * above;
+    match camera.projection {
+        Projection::Perspective { .. } => Ray {
+            origin: camera.from,
+            direction: forward + in_plane,
+        },
+        Projection::Orthographic { .. } => Ray {
+            origin: camera.from + in_plane,
+            direction: forward,
+        },
+    }
 }
 
 /// A camera as lanes use it; its position is the origin.

@@ -1,10 +1,5 @@
 //! What can be asked for on the command line.
 
-#![allow(
-    dead_code,
-    reason = "not every command is there yet to read its arguments"
-)]
-
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -115,6 +110,16 @@ impl Render {
     /// What is laid over the scene file for this panel.
     pub fn overrides(&self, panel: Option<&str>) -> Overrides {
         self.scene.overrides(panel, &self.image.keys())
+    }
+
+    /// Whether the samples a pixel are said here, not only in the scene file.
+    pub fn sets_spp(&self) -> bool {
+        self.image.spp.is_some() || self.scene.set.iter().any(|(key, _)| key == "image.spp")
+    }
+
+    /// Whether each panel is to be rendered.
+    pub fn panel_is_all(&self) -> bool {
+        self.panel == Some(Panels::All)
     }
 }
 

@@ -1,5 +1,8 @@
 //! `etalon info`: what a scene needs, in words.
 
+use std::io::Write as _;
+
+use etalon::plan::{Plan, explain};
 use etalon::scene;
 
 use super::Answer;
@@ -8,6 +11,12 @@ use super::error::CommandError;
 
 /// Describes the scene.
 pub fn run(arguments: &Info) -> Result<Answer, CommandError> {
-    scene::load(&arguments.scene.scene, &arguments.overrides())?;
-    Err(CommandError::NotAvailable("info"))
+    let scene = scene::load(&arguments.scene.scene, &arguments.overrides())?;
+    let plan = Plan::new(&scene, false)?;
+    let lines = explain::explain(&scene, &plan);
+    let mut output = std::io::stdout().lock();
+    writeln!(output, "{}", lines.join("\n"))
+        .and_then(|()| output.flush())
+        .map_err(CommandError::Output)?;
+    Ok(Answer::Good)
 }

@@ -14,7 +14,7 @@ use super::error::CommandError;
 use super::{Answer, tell};
 pub use rays::RayError;
 use rays::{Line, Lines, Table};
-use target::{Decided, FirstHit, Target};
+pub use target::{Decided, FirstHit, Target};
 
 const HEADING: &str = "id,hit,t,x,y,z,nx,ny,nz,object\n";
 

@@ -1,10 +1,5 @@
 //! Values of options, as they are written.
 
-#![allow(
-    dead_code,
-    reason = "not every command is there yet to read its arguments"
-)]
-
 use std::fmt;
 use std::str::FromStr;
 use std::time::Duration;
@@ -199,6 +194,13 @@ pub enum PlanChoice {
     Full,
 }
 
+impl PlanChoice {
+    /// Whether nothing is left out.
+    pub fn is_full(self) -> bool {
+        self == Self::Full
+    }
+}
+
 /// Instruction sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum Instructions {
@@ -211,4 +213,16 @@ pub enum Instructions {
     Avx2,
     /// SSE2, with fused multiply-add in software.
     Sse2,
+}
+
+impl Instructions {
+    /// The name, unless any will do.
+    pub fn name(self) -> Option<&'static str> {
+        match self {
+            Self::Auto => None,
+            Self::Avx512 => Some("avx512"),
+            Self::Avx2 => Some("avx2"),
+            Self::Sse2 => Some("sse2"),
+        }
+    }
 }

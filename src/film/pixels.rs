@@ -32,18 +32,29 @@ pub fn to_rgb(xyz: [f64; 3]) -> [f64; 3] {
     XYZ_TO_LINEAR_SRGB.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])
 }
 
+/// Replicates that a pixel has room for.
+fn slots(replicates: Replicates) -> usize {
+    let slots = match replicates {
+        Replicates::Fixed(count) => count,
+        Replicates::Growing => GROWN,
+    };
+    slots as usize
+}
+
 impl Pixels {
     /// Zero sums for this many pixels.
     pub fn new(pixels: usize, replicates: Replicates) -> Self {
-        let slots = match replicates {
-            Replicates::Fixed(count) => count,
-            Replicates::Growing => GROWN,
-        } as usize;
+        let slots = slots(replicates);
         Self {
             replicates,
             slots,
             sums: vec![[0.0; 3]; pixels * slots],
         }
+    }
+
+    /// Bytes of a pixel's sums.
+    pub fn bytes_per_pixel(replicates: Replicates) -> usize {
+        slots(replicates) * size_of::<[f64; 3]>()
     }
 
     /// Adds sample `sample` of a pixel; a pixel's samples must come in order.

@@ -2,16 +2,37 @@
 //!
 //! The content goes to a temporary file in the target's own directory (only there is a rename
 //! atomic), is brought to the disk, and takes the target's name at once. Whatever fails before
-//! leaves an existing file as it was, and nothing else behind; only a process killed while it
-//! writes leaves its `.etalon-….part`.
+//! leaves an existing file as it was, and nothing else behind; a program that has to end while it
+//! writes calls [`abandon`] first, and only a process killed leaves its `.etalon-….part`.
 
 use std::fs::{self, File, Metadata, OpenOptions, Permissions};
 use std::io::{self, Seek};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::NamedTempFile;
 
 use super::Error;
+
+/// Temporary files that are being filled.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    // A list of paths is never half changed.
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes the temporary files that are being filled, for a program about to end at once; no file
+/// takes its name any more while the result is kept.
+#[must_use]
+pub fn abandon() -> impl Sized {
+    let unfinished = unfinished();
+    for path in unfinished.iter() {
+        // Nobody is left to be told of a file that cannot be removed.
+        let _ = fs::remove_file(path);
+    }
+    unfinished
+}
 
 /// Where the content will end up.
 enum Target {
@@ -55,8 +76,28 @@ fn replace(
     permissions: Option<Permissions>,
     fill: impl FnOnce(&mut File) -> Result<(), Error>,
 ) -> Result<(), Error> {
-    let failed = |source| refused(path, source);
     let mut temporary = temporary(path, target)?;
+    let own = temporary.path().to_owned();
+    unfinished().push(own.clone());
+    let filled = fill_and_keep(path, &mut temporary, permissions, fill);
+    let mut list = unfinished();
+    list.retain(|path| *path != own);
+    filled?;
+    let persisted = temporary.persist(target);
+    drop(list);
+    persisted.map_err(|persist| refused(path, persist.error))?;
+    sync_directory(directory(target));
+    Ok(())
+}
+
+/// Fills a temporary file and brings it to the disk.
+fn fill_and_keep(
+    path: &Path,
+    temporary: &mut NamedTempFile,
+    permissions: Option<Permissions>,
+    fill: impl FnOnce(&mut File) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let failed = |source| refused(path, source);
     fill(temporary.as_file_mut())?;
     if let Some(permissions) = permissions {
         temporary
@@ -64,12 +105,7 @@ fn replace(
             .set_permissions(permissions)
             .map_err(failed)?;
     }
-    temporary.as_file().sync_all().map_err(failed)?;
-    temporary
-        .persist(target)
-        .map_err(|persist| failed(persist.error))?;
-    sync_directory(directory(target));
-    Ok(())
+    temporary.as_file().sync_all().map_err(failed)
 }
 
 /// Fills a nameless temporary file and copies it to a device or pipe.

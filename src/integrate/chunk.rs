@@ -39,7 +39,7 @@ pub struct Beyond {
 pub struct Workspace<T, const C: usize> {
     pool: Pool<T>,
     /// Spectra by sample; behind [`CHUNK`] those of the paths that go on beyond `max_depth`.
-    rows: Rows<T, C>,
+    pub rows: Rows<T, C>,
     /// Samples of this chunk whose paths went on.
     beyond_slots: Vec<u32>,
     /// X, Y, Z by sample.

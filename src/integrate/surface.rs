@@ -6,7 +6,7 @@ use super::pool::any;
 use crate::math::lanes::{Int, Lanes, Mask, Real, inlined};
 use crate::math::vec3::Vec3;
 use crate::sample::mis::power_weight;
-use crate::shape::lanes::LaneRay;
+use crate::shape::lanes::{LaneRay, LaneSurface};
 
 /// The surfaces that a packet of rays has met.
 #[derive(Clone, Copy)]
@@ -77,18 +77,12 @@ pub fn surfaces<L: Lanes>(
                 pending &= !here.bits();
                 let shape = &model.shapes[k as usize];
                 let shading = &model.shading[k as usize];
-                let (local, normal) = if shape.kind.is_some() {
-                    let o = shape.inverse.point(l, ray.origin);
-                    let d = shape.inverse.vector(l, ray.direction);
-                    shape.surface(l, o.along(d, nearest.t))
+                let p = ray.origin.along(ray.direction, nearest.t);
+                let LaneSurface { point, normal } = if shape.kind.is_some() {
+                    shape.surface(l, p)
                 } else {
-                    let p = shape
-                        .inverse
-                        .point(l, ray.origin.along(ray.direction, nearest.t));
-                    (p, implicit_normal(l, model, k, p))
+                    implicit_surface(l, model, k, p)
                 };
-                let point = shape.forward.point(l, local);
-                let normal = shape.inverse.transposed(l, normal).normalized(l);
                 let front = normal.dot(ray.direction).lt(zero);
                 out.point = Vec3::select(l, here, point, out.point);
                 out.normal = Vec3::select(l, here, normal, out.normal);
@@ -101,6 +95,7 @@ pub fn surfaces<L: Lanes>(
                         |x: L::Real, frequency| (x * l.splat(frequency)).floor(),
                     );
                     let [fx, fy, fz] = checker.frequency;
+                    let local = shape.local(l, point);
                     let half =
                         (cell(local.x, fx) + cell(local.y, fy) + cell(local.z, fz)) * l.real(0.5);
                     let odd = !half.same(half.floor());
@@ -124,9 +119,7 @@ pub fn surfaces<L: Lanes>(
                     {
                         let light = &model.lights[index as usize];
                         let chosen = l.splat(light.probability)
-                            * light
-                                .shape
-                                .pdf(l, ray.origin, ray.direction, nearest.t, normal);
+                            * light.shape.pdf(l, ray.origin, ray.direction, normal);
                         let weight = power_weight(l, arrival.pdf, chosen);
                         let weighted = emits & !arrival.specular;
                         out.emission_weight = l.select(weighted, weight, out.emission_weight);
@@ -138,22 +131,27 @@ pub fn surfaces<L: Lanes>(
     )
 }
 
-/// Outward normal of an implicit surface: its gradient; where that vanishes, the direction from
-/// the centre of its box, so that the normal is finite everywhere.
+/// An implicit surface's outward normal: its gradient; where that vanishes, the direction from
+/// the object's origin, so that the normal is finite everywhere.
 #[inline(always)]
-fn implicit_normal<L: Lanes>(
+fn implicit_surface<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
     object: u32,
-    p: Vec3<L::Real>,
-) -> Vec3<L::Real> {
-    let mut normal = p;
+    point: Vec3<L::Real>,
+) -> LaneSurface<L> {
+    let inverse = &model.shapes[object as usize].inverse;
+    let local = inverse.point(l, point);
+    let mut normal = local;
     for (k, implicit) in &model.implicits {
         if *k == object {
-            let gradient = implicit.gradient(l, p);
+            let gradient = implicit.gradient(l, local);
             let defined = gradient.length_squared().gt(l.real(0.0));
             normal = Vec3::select(l, defined, gradient, normal);
         }
     }
-    normal
+    LaneSurface {
+        point,
+        normal: inverse.transposed(l, normal).normalized(l),
+    }
 }

@@ -82,20 +82,24 @@ impl<T: Scalar> CubeLight<T> {
                 let mut below = zero;
                 let mut to = Vec3::new(zero, zero, one);
                 let mut normal = to;
+                let mut height = zero;
                 for (face, area) in self.faces.iter().zip(areas) {
                     // The last face with area whose share begins at or below the target wins.
                     let here = target.ge(below) & area.gt(zero);
                     let share = (target - below) / area;
                     let x = two.mul_add(share.max(zero).min(one), -one);
                     let y = two.mul_add(v, -one);
-                    let point = (vector(l, &face.centre) - p)
+                    let to_face = vector(l, &face.centre) - p;
+                    let face_normal = vector(l, &face.normal);
+                    let point = to_face
                         .along(vector(l, &face.half[0]), x)
                         .along(vector(l, &face.half[1]), y);
                     to = Vec3::select(l, here, point, to);
-                    normal = Vec3::select(l, here, vector(l, &face.normal), normal);
+                    normal = Vec3::select(l, here, face_normal, normal);
+                    height = l.select(here, to_face.dot(face_normal), height);
                     below = below + area;
                 }
-                let mut towards = by_area(l, to, normal, one / total, [true, true]);
+                let mut towards = by_area(l, to, normal, height, one / total, [true, true]);
                 towards.valid = towards.valid & total.gt(zero);
                 towards
             },
@@ -109,14 +113,25 @@ impl<T: Scalar> CubeLight<T> {
         l: L,
         p: Vec3<L::Real>,
         direction: Vec3<L::Real>,
-        distance: L::Real,
         normal: Vec3<L::Real>,
     ) -> L::Real {
         l.vectorize(
             #[inline(always)]
             || {
                 let (_, total) = self.visible(l, p);
-                area_pdf(l, direction, distance, normal, l.real(1.0) / total)
+                // The face that was met is the one whose normal is the hit's, up to rounding.
+                let zero = l.real(0.0);
+                let (mut likeness, mut height, mut cosine) = (-l.real(2.0), zero, zero);
+                for face in &self.faces {
+                    let face_normal = vector(l, &face.normal);
+                    let like = face_normal.dot(normal);
+                    let here = like.gt(likeness);
+                    let to_face = vector(l, &face.centre) - p;
+                    likeness = l.select(here, like, likeness);
+                    height = l.select(here, to_face.dot(face_normal), height);
+                    cosine = l.select(here, direction.dot(face_normal), cosine);
+                }
+                area_pdf(cosine, height, l.real(1.0) / total)
             },
         )
     }

@@ -109,24 +109,26 @@ impl<T: Scalar> LightShape<T> {
         }
     }
 
-    /// Density in solid angle with which [`Self::sample`] from p would have chosen the hit at
-    /// distance `distance` in unit direction `direction`.
+    /// Density in solid angle with which [`Self::sample`] from p would have chosen the unit
+    /// direction `direction`, which meets the light where its normal is `normal`.
+    ///
+    /// It is a function of p and the direction alone, the same for both sampling strategies, bit
+    /// for bit: the weights of a direction then sum to 1 however grazing it is. (The hit's own
+    /// distance and normal would be as good, but rounded otherwise, and 1/cos enlarges that.) The
+    /// normal only tells the faces of a cube apart.
     #[inline(always)]
     pub fn pdf<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         p: Vec3<L::Real>,
         direction: Vec3<L::Real>,
-        distance: L::Real,
         normal: Vec3<L::Real>,
     ) -> L::Real {
         match self {
-            Self::Rectangle(light) => light.pdf(l, p, direction, distance, normal),
-            Self::Disk(light) | Self::Parallelogram(light) => {
-                area_pdf(l, direction, distance, normal, l.splat(light.inverse_area))
-            }
-            Self::Sphere(light) => light.pdf(l, p, direction, distance, normal),
-            Self::Cube(light) => light.pdf(l, p, direction, distance, normal),
+            Self::Rectangle(light) => light.pdf(l, p, direction),
+            Self::Disk(light) | Self::Parallelogram(light) => light.pdf(l, p, direction),
+            Self::Sphere(light) => light.pdf(l, p, direction),
+            Self::Cube(light) => light.pdf(l, p, direction, normal),
             Self::Point(_) | Self::Directional(_) => l.real(0.0),
         }
     }
@@ -173,13 +175,28 @@ impl<T: Scalar> PlanarLight<T> {
         let to = (vector(l, &self.centre) - p)
             .along(vector(l, &self.half[0]), x)
             .along(vector(l, &self.half[1]), y);
+        let normal = vector(l, &self.normal);
+        let height = (vector(l, &self.centre) - p).dot(normal);
         by_area(
             l,
             to,
-            vector(l, &self.normal),
+            normal,
+            height,
             l.splat(self.inverse_area),
             self.emits,
         )
+    }
+
+    #[inline(always)]
+    fn pdf<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        p: Vec3<L::Real>,
+        direction: Vec3<L::Real>,
+    ) -> L::Real {
+        let normal = vector(l, &self.normal);
+        let height = (vector(l, &self.centre) - p).dot(normal);
+        area_pdf(direction.dot(normal), height, l.splat(self.inverse_area))
     }
 }
 
@@ -189,13 +206,14 @@ fn vector<L: Lanes>(l: L, v: &[L::Scalar; 3]) -> Vec3<L::Real> {
     Vec3::new(l.splat(v[0]), l.splat(v[1]), l.splat(v[2]))
 }
 
-/// Direction, distance and density for a point chosen uniformly on an area, `to` away from the
-/// receiver, with the sides that emit.
+/// Direction, distance and density for a point chosen uniformly on a plane area, `to` away from
+/// the receiver, with the sides that emit; `height` is the plane's, along its normal.
 #[inline(always)]
 fn by_area<L: Lanes>(
     l: L,
     to: Vec3<L::Real>,
     normal: Vec3<L::Real>,
+    height: L::Real,
     inverse_area: L::Real,
     emits: [bool; 2],
 ) -> Towards<L> {
@@ -204,27 +222,22 @@ fn by_area<L: Lanes>(
     let direction = to.scale(l.real(1.0) / distance);
     let zero = l.real(0.0);
     // Light leaves along −direction: the front is seen where direction · normal < 0.
-    let cosine = -direction.dot(normal);
-    let front = cosine.gt(zero) & l.mask(emits[0]);
-    let back = cosine.lt(zero) & l.mask(emits[1]);
+    let cosine = direction.dot(normal);
+    let front = cosine.lt(zero) & l.mask(emits[0]);
+    let back = cosine.gt(zero) & l.mask(emits[1]);
     Towards {
         direction,
         distance,
-        pdf: squared / cosine.abs() * inverse_area,
+        pdf: area_pdf(cosine, height, inverse_area),
         valid: front | back,
     }
 }
 
-/// Density in solid angle of uniform sampling by area: d²/(A |cos|).
+/// Density in solid angle of uniform sampling of a plane area A: d²/(A |cos|) with d = h/cos.
 #[inline(always)]
-fn area_pdf<L: Lanes>(
-    _l: L,
-    direction: Vec3<L::Real>,
-    distance: L::Real,
-    normal: Vec3<L::Real>,
-    inverse_area: L::Real,
-) -> L::Real {
-    distance * distance / direction.dot(normal).abs() * inverse_area
+fn area_pdf<R: Real>(cosine: R, height: R, inverse_area: R) -> R {
+    let distance = height / cosine;
+    distance * distance / cosine.abs() * inverse_area
 }
 
 /// Whether any lane is set; a convenience for the shapes.

@@ -126,6 +126,7 @@ impl<T: Scalar> RectangleLight<T> {
                     l,
                     to,
                     vector(l, &self.normal),
+                    seen.z,
                     l.splat(self.inverse_area),
                     self.emits,
                 );
@@ -142,14 +143,13 @@ impl<T: Scalar> RectangleLight<T> {
         l: L,
         p: Vec3<L::Real>,
         direction: Vec3<L::Real>,
-        distance: L::Real,
-        normal: Vec3<L::Real>,
     ) -> L::Real {
         l.vectorize(
             #[inline(always)]
             || {
                 let seen = self.seen(l, p);
-                let area = area_pdf(l, direction, distance, normal, l.splat(self.inverse_area));
+                let cosine = direction.dot(vector(l, &self.normal));
+                let area = area_pdf(cosine, seen.z, l.splat(self.inverse_area));
                 l.select(seen.near, seen.pdf(l), area)
             },
         )

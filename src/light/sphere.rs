@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::{Towards, area_pdf, by_area, vector};
+use super::{Towards, vector};
 use crate::math::functions::sin_cos_turns;
-use crate::math::lanes::{Lanes, Real, Scalar};
+use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 use crate::sample::warp::uniform_sphere;
 
@@ -73,7 +73,8 @@ impl<T: Scalar> SphereLight<T> {
                 // By area, as seen from inside.
                 let w = uniform_sphere(l, u, v);
                 let to = cone.to.along(w, l.splat(self.radius));
-                let inside = by_area(l, to, w, l.splat(self.inverse_area), [false, self.emits[1]]);
+                let from_inside = to.length_squared().sqrt();
+                let inward = to.scale(one / from_inside);
                 // In the cone: 1 − cos θ uniform.
                 let height = u * cone.height;
                 let cosine = one - height;
@@ -82,7 +83,8 @@ impl<T: Scalar> SphereLight<T> {
                 let sine = sine_squared.sqrt();
                 let axis = cone.to.scale(one / cone.squared.sqrt());
                 let (a, b) = axis.frame(l);
-                let direction = axis.scale(cosine).along(a, sine * c).along(b, sine * s);
+                let outward = axis.scale(cosine).along(a, sine * c).along(b, sine * s);
+                let direction = Vec3::select(l, cone.outside, outward, inward);
                 // Nearer crossing: d cos θ − √(r² − d² sin² θ).
                 let half = (-cone.squared)
                     .mul_add(sine_squared, l.splat(self.radius_squared))
@@ -90,10 +92,11 @@ impl<T: Scalar> SphereLight<T> {
                     .sqrt();
                 let distance = cone.squared.sqrt().mul_add(cosine, -half);
                 Towards {
-                    direction: Vec3::select(l, cone.outside, direction, inside.direction),
-                    distance: l.select(cone.outside, distance, inside.distance),
-                    pdf: l.select(cone.outside, cone_pdf(l, cone.height), inside.pdf),
-                    valid: (cone.outside & l.mask(self.emits[0])) | (!cone.outside & inside.valid),
+                    direction,
+                    distance: l.select(cone.outside, distance, from_inside),
+                    pdf: self.density(l, &cone, direction),
+                    valid: (cone.outside & l.mask(self.emits[0]))
+                        | (!cone.outside & l.mask(self.emits[1])),
                 }
             },
         )
@@ -106,17 +109,37 @@ impl<T: Scalar> SphereLight<T> {
         l: L,
         p: Vec3<L::Real>,
         direction: Vec3<L::Real>,
-        distance: L::Real,
-        normal: Vec3<L::Real>,
     ) -> L::Real {
         l.vectorize(
             #[inline(always)]
-            || {
-                let cone = self.cone(l, p);
-                let area = area_pdf(l, direction, distance, normal, l.splat(self.inverse_area));
-                l.select(cone.outside, cone_pdf(l, cone.height), area)
-            },
+            || self.density(l, &self.cone(l, p), direction),
         )
+    }
+
+    /// Uniform in the cone from outside; from inside t²/(A cos) at the crossing ahead, with
+    /// cos = √(r² − b²)/r for a line that passes the centre at distance b, and t the larger root of
+    /// t² − 2t (to · ω) = r² − |to|² in whichever form adds.
+    #[inline(always)]
+    fn density<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        cone: &Cone<L>,
+        direction: Vec3<L::Real>,
+    ) -> L::Real {
+        let uniform = cone_pdf(l, cone.height);
+        if !(!cone.outside).any() {
+            return uniform;
+        }
+        let zero = l.real(0.0);
+        let ahead = cone.to.dot(direction);
+        let foot = cone.to.along(direction, -ahead);
+        let half = (l.splat(self.radius_squared) - foot.length_squared())
+            .max(zero)
+            .sqrt();
+        let depth = (l.splat(self.radius_squared) - cone.squared).max(zero);
+        let t = l.select(ahead.gt(zero), half + ahead, depth / (half - ahead));
+        let by_area = t * t * l.splat(self.radius) / half * l.splat(self.inverse_area);
+        l.select(cone.outside, uniform, by_area)
     }
 }
 

@@ -9,11 +9,11 @@ use crate::math::lanes::{Lanes, Real, Scalar};
 pub fn dielectric<L: Lanes>(l: L, cosine: L::Real, eta: L::Real) -> (L::Real, L::Real) {
     let one = l.real(1.0);
     let zero = l.real(0.0);
-    let inverse = one / eta;
-    // 1 − sin²θₜ = 1 − (1 − cos²θᵢ)/η², with (1 − c)(1 + c) for accuracy near c = 1.
-    let sine_squared = (one - cosine) * (one + cosine) * inverse * inverse;
-    let total = sine_squared.ge(one);
-    let transmitted = (one - sine_squared).max(zero).sqrt();
+    // η² cos²θₜ = η² − sin²θᵢ = (η − 1)(η + 1) + cos²θᵢ: no digits are lost at grazing incidence,
+    // and equal media reflect nothing.
+    let squared = (eta - one).mul_add(eta + one, cosine * cosine);
+    let total = !squared.gt(zero);
+    let transmitted = squared.max(zero).sqrt() / eta;
     let s = (-eta).mul_add(transmitted, cosine) / eta.mul_add(transmitted, cosine);
     let p = eta.mul_add(cosine, -transmitted) / eta.mul_add(cosine, transmitted);
     let reflectance = s.mul_add(s, p * p) * l.real(0.5);
@@ -51,15 +51,10 @@ pub fn conductor<T: Scalar>(cosine: T, n: T, k: T) -> T {
 pub fn dielectric_reflectance<T: Scalar>(cosine: T, eta: T) -> T {
     let one = T::from_f64(1.0);
     let zero = T::default();
-    let inverse = one / eta;
-    let sine_squared = (one - cosine) * (one + cosine) * inverse * inverse;
-    let transmitted = (one - sine_squared).larger(zero).root();
+    let squared = (eta - one).fused(eta + one, cosine * cosine);
+    let transmitted = squared.larger(zero).root() / eta;
     let s = (cosine - eta * transmitted) / (cosine + eta * transmitted);
     let p = (eta * cosine - transmitted) / (eta * cosine + transmitted);
     let reflectance = (s * s + p * p) * T::from_f64(0.5);
-    if sine_squared >= one {
-        one
-    } else {
-        reflectance
-    }
+    if squared > zero { reflectance } else { one }
 }

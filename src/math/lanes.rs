@@ -9,7 +9,9 @@ use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, f32x16, f64x8, i32x16, mask32x16, mask64x8, u32x16, u64x8};
+use fearless_simd::{
+    Level, f32x16, f64x8, i32x16, mask32x16, mask64x8, u8x16, u8x64, u32x16, u64x8,
+};
 
 /// The scalar stored in one lane, as arrays keep it.
 pub trait Scalar:
@@ -115,9 +117,9 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Absolute value.
     fn abs(self) -> Self;
-    /// The smaller; the other operand where one is NaN.
+    /// The smaller; the other operand where one is NaN; zero is positive.
     fn min(self, other: Self) -> Self;
-    /// The larger; the other operand where one is NaN.
+    /// The larger; the other operand where one is NaN; zero is positive.
     fn max(self, other: Self) -> Self;
     /// Largest integer not above.
     fn floor(self) -> Self;
@@ -153,6 +155,8 @@ pub trait Int:
     fn left(self, by: u32) -> Self;
     /// Shift right by a constant.
     fn right(self, by: u32) -> Self;
+    /// The 32 bits in reverse order.
+    fn reversed(self) -> Self;
     /// Equality.
     fn same(self, other: Self) -> Self::Mask;
     /// Unsigned `self < other`.
@@ -304,11 +308,13 @@ macro_rules! real_impl {
             }
             #[inline(always)]
             fn min(self, other: Self) -> Self {
-                self.min_precise(other)
+                // Which of two unlike zeros comes out depends on the instruction set: + 0 makes
+                // either positive and changes nothing else.
+                self.min_precise(other) + 0.0
             }
             #[inline(always)]
             fn max(self, other: Self) -> Self {
-                self.max_precise(other)
+                self.max_precise(other) + 0.0
             }
             #[inline(always)]
             fn floor(self) -> Self {
@@ -349,6 +355,23 @@ macro_rules! real_impl {
 real_impl!(f32x16, mask32x16, fused_by_call_single);
 real_impl!(f64x8, mask64x8, fused_by_call_double);
 
+/// Reverses the order of the bits in each byte, and of the bytes as `order` says in each 16.
+#[inline(always)]
+fn reversed_bytes<S: Simd>(simd: S, bytes: u8x64<S>, order: [u8; 16]) -> u8x64<S> {
+    /// The four bits of the index reversed.
+    const NIBBLES: [u8; 16] = [0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15];
+    let repeated = inlined(
+        #[inline(always)]
+        |block: [u8; 16]| u8x64::block_splat(u8x16::simd_from(simd, block)),
+    );
+    let table = repeated(NIBBLES);
+    let low = u8x64::splat(simd, 0x0f);
+    let bytes = bytes.swizzle_dyn_within_blocks(repeated(order));
+    let high_nibbles = table.swizzle_dyn_within_blocks(bytes & low) << 4;
+    let low_nibbles = table.swizzle_dyn_within_blocks((bytes >> 4) & low);
+    high_nibbles | low_nibbles
+}
+
 impl<S: Simd> Int for u32x16<S> {
     type Mask = mask32x16<S>;
     #[inline(always)]
@@ -370,6 +393,11 @@ impl<S: Simd> Int for u32x16<S> {
     #[inline(always)]
     fn right(self, by: u32) -> Self {
         self >> by
+    }
+    #[inline(always)]
+    fn reversed(self) -> Self {
+        const ORDER: [u8; 16] = [3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12];
+        reversed_bytes(self.token(), self.bitcast(), ORDER).bitcast()
     }
     #[inline(always)]
     fn same(self, other: Self) -> Self::Mask {
@@ -408,6 +436,11 @@ impl<S: Simd> Int for u64x8<S> {
     #[inline(always)]
     fn right(self, by: u32) -> Self {
         self >> by
+    }
+    #[inline(always)]
+    fn reversed(self) -> Self {
+        const ORDER: [u8; 16] = [3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12];
+        reversed_bytes(self.token(), self.bitcast(), ORDER).bitcast()
     }
     #[inline(always)]
     fn same(self, other: Self) -> Self::Mask {

@@ -1,1 +1,353 @@
 //! The plan in words.
+
+use std::collections::BTreeMap;
+
+use super::choose::{GAP_SHARE, PIXEL_SHARE, Precision, PrecisionReason};
+use super::{Plan, Tables};
+use crate::film::pixels::Pixels;
+use crate::integrate::model::{Model, Needs};
+use crate::light::LightShape;
+use crate::math::lanes::Scalar;
+use crate::sample::sequence::Replicates;
+use crate::scene::{ImplicitSurface, Object, SamplerKind, Scene, Shape, Surface};
+
+/// As many names as a line lists.
+const LISTED: usize = 6;
+
+/// What the scene holds, what it needs and what is done about it, line by line.
+pub fn explain(scene: &Scene, plan: &Plan) -> Vec<String> {
+    let mut lines = vec![
+        picture(scene),
+        objects(scene),
+        camera(scene, plan.choices.needs),
+    ];
+    lines.extend(lights(scene, plan));
+    lines.push(kept(plan.choices.needs));
+    lines.extend(omitted(plan));
+    lines.push(wavelengths(scene, plan));
+    lines.push(precision(plan));
+    lines.push(intersection(scene));
+    lines.push(sampler(scene, plan));
+    lines.push(depth(scene));
+    lines.push(memory(scene, plan));
+    let carried = plan.left_out.iter();
+    lines.extend(
+        carried.map(|light| {
+            format!("light left out: {light}, which paths from the camera cannot carry")
+        }),
+    );
+    lines
+}
+
+fn picture(scene: &Scene) -> String {
+    let image = &scene.image;
+    let panel = scene.panel.as_ref();
+    let panel = panel.map_or_else(String::new, |name| format!(", panel {name}"));
+    format!(
+        "{}{panel}: {} × {} pixels, {} camera paths each",
+        scene.source.path, image.size[0], image.size[1], image.spp
+    )
+}
+
+/// How often each word occurs, the words in alphabetical order.
+fn counted(words: impl Iterator<Item = String>) -> String {
+    let mut counts = BTreeMap::<String, usize>::new();
+    for word in words {
+        *counts.entry(word).or_default() += 1;
+    }
+    let counts: Vec<String> = counts
+        .into_iter()
+        .map(|(word, count)| format!("{count} {word}"))
+        .collect();
+    counts.join(", ")
+}
+
+fn objects(scene: &Scene) -> String {
+    if scene.objects.is_empty() {
+        return "objects: none".to_owned();
+    }
+    let dressed = scene.objects.iter().map(|object| {
+        let material = &scene.materials[object.value.material].value;
+        let emits = material.emission.as_ref().map_or("", |_| ", emitting");
+        let dress = format!("{}{emits}", surface_kind(&material.surface));
+        format!("{} ({dress})", shape_kind(&object.value))
+    });
+    format!("objects: {}", counted(dressed))
+}
+
+fn shape_kind(object: &Object) -> &'static str {
+    match &object.shape {
+        Shape::Sphere => "sphere",
+        Shape::Cube => "cube",
+        Shape::Cylinder => "cylinder",
+        Shape::Disk => "disk",
+        Shape::Rectangle => "rectangle",
+        Shape::Plane => "plane",
+        Shape::Implicit(implicit) => match implicit.surface {
+            ImplicitSurface::Heart => "implicit heart",
+            ImplicitSurface::Mitchell => "implicit Mitchell",
+        },
+    }
+}
+
+fn surface_kind(surface: &Surface) -> &'static str {
+    match surface {
+        Surface::Black => "black",
+        Surface::Diffuse(_) => "diffuse",
+        Surface::Conductor(_) => "metal",
+        Surface::IdealMirror(_) => "ideal mirror",
+        Surface::Glass(ior) if ior.disperses() => "dispersive glass",
+        Surface::Glass(_) => "glass",
+        Surface::Checkerboard { .. } => "checkerboard",
+    }
+}
+
+fn camera(scene: &Scene, needs: Needs) -> String {
+    match (&scene.camera.lens, needs.lens) {
+        (Some(lens), _) => format!(
+            "camera: a lens of radius {}, sharp at distance {}",
+            lens.radius, lens.focus
+        ),
+        (None, true) => "camera: no lens, yet its numbers are drawn".to_owned(),
+        (None, false) => "camera: no lens, whose two numbers are not drawn".to_owned(),
+    }
+}
+
+/// A light of the tables: its object, how it is sampled, and how often.
+struct Sampled {
+    object: u32,
+    kind: &'static str,
+    how: &'static str,
+    probability: f64,
+}
+
+fn sampled<T: Scalar>(model: &Model<T>) -> Vec<Sampled> {
+    let lights = model.lights.iter().map(|light| Sampled {
+        object: light.object,
+        kind: match light.shape {
+            LightShape::Point(_) => "point light",
+            LightShape::Directional(_) => "directional light",
+            _ => "surface",
+        },
+        how: strategy(&light.shape),
+        probability: light.probability.to_f64(),
+    });
+    lights.collect()
+}
+
+fn strategy<T>(shape: &LightShape<T>) -> &'static str {
+    match shape {
+        LightShape::Rectangle(_) => "by solid angle near, by area far",
+        LightShape::Disk(_) | LightShape::Parallelogram(_) => "by area",
+        LightShape::Sphere(_) => "by the solid angle of its cone from outside, by area inside",
+        LightShape::Cube(_) => "by the area of its visible faces",
+        LightShape::Point(_) | LightShape::Directional(_) => "by its one direction",
+    }
+}
+
+fn lights(scene: &Scene, plan: &Plan) -> Vec<String> {
+    let sampled = match &plan.tables {
+        Tables::Single(tables) => sampled(&tables.0),
+        Tables::Double(tables) => sampled(&tables.0),
+    };
+    let mut by_strategy = BTreeMap::<&str, Vec<String>>::new();
+    for light in &sampled {
+        let object = scene.objects.get(light.object as usize);
+        let name = object.map_or(light.kind, |object| object.name.as_str());
+        let share = 100.0 * light.probability;
+        let names = by_strategy.entry(light.how).or_default();
+        names.push(format!("{name} ({share:.0} %)"));
+    }
+    let mut lines: Vec<String> = by_strategy
+        .iter()
+        .map(|(how, names)| format!("lights sampled {how}: {}", listed(names)))
+        .collect();
+    let found = found_only(scene, &sampled);
+    if !found.is_empty() {
+        let names = listed(&found);
+        lines.push(format!("lights that only scattered rays find: {names}"));
+    }
+    if lines.is_empty() {
+        lines.push("lights: none, so the picture is black".to_owned());
+    }
+    lines
+}
+
+/// What emits and is not sampled.
+fn found_only(scene: &Scene, sampled: &[Sampled]) -> Vec<String> {
+    let emitting = scene.objects.iter().enumerate().filter(|(index, object)| {
+        let emits = scene.materials[object.value.material]
+            .value
+            .emission
+            .is_some();
+        emits && !sampled.iter().any(|light| light.object as usize == *index)
+    });
+    let mut found: Vec<String> = emitting.map(|(_, object)| object.name.clone()).collect();
+    if scene.environment.is_some() {
+        found.push("the environment".to_owned());
+    }
+    found
+}
+
+/// Names, shortened when there are many.
+fn listed(names: &[String]) -> String {
+    let shown = names.len().min(LISTED);
+    let mut text = names[..shown].join(", ");
+    if names.len() > shown {
+        text.push_str(&format!(" … and {} more", names.len() - shown));
+    }
+    text
+}
+
+/// The branches of the loop, in words.
+fn branches(needs: Needs) -> [(&'static str, bool); 9] {
+    [
+        ("diffuse reflection", needs.diffuse),
+        ("metals", needs.conductor),
+        ("ideal mirrors", needs.ideal_mirror),
+        ("glass", needs.glass),
+        ("dispersion", needs.dispersion),
+        ("emitting surfaces", needs.emission),
+        ("lens", needs.lens),
+        ("implicit surfaces", needs.implicit),
+        ("checkerboards", needs.checker),
+    ]
+}
+
+fn named(needs: Needs, wanted: bool) -> Vec<&'static str> {
+    let branches = branches(needs).into_iter();
+    let kept = branches.filter(|(_, needed)| *needed == wanted);
+    kept.map(|(name, _)| name).collect()
+}
+
+fn kept(needs: Needs) -> String {
+    match named(needs, true).as_slice() {
+        [] => "in the loop: nothing but the environment".to_owned(),
+        names => format!("in the loop: {}", names.join(", ")),
+    }
+}
+
+fn omitted(plan: &Plan) -> Option<String> {
+    if plan.choices.full {
+        return Some("left out of the loop: nothing, as asked for".to_owned());
+    }
+    let names = named(plan.choices.needs, false);
+    let text = || {
+        format!(
+            "left out of the loop, as nothing here needs it: {}",
+            names.join(", ")
+        )
+    };
+    (!names.is_empty()).then(text)
+}
+
+fn wavelengths(scene: &Scene, plan: &Plan) -> String {
+    let count = plan.choices.wavelengths;
+    let disperses = scene.objects.iter().filter(|object| {
+        let surface = &scene.materials[object.value.material].value.surface;
+        matches!(surface, Surface::Glass(ior) if ior.disperses())
+    });
+    let names: Vec<String> = disperses.map(|object| object.name.clone()).collect();
+    if names.is_empty() {
+        format!("wavelengths: {count} a path; nothing disperses, so all live to the end")
+    } else {
+        format!(
+            "wavelengths: {count} a path; all but one end where it is refracted by {}",
+            listed(&names)
+        )
+    }
+}
+
+fn precision(plan: &Plan) -> String {
+    let name = match plan.choices.precision {
+        Precision::Single => "single (f32)",
+        Precision::Double => "double (f64)",
+    };
+    let PrecisionReason::Measured { error, gap } = plan.choices.precision_reason else {
+        return format!("precision: {name}, as asked for");
+    };
+    let pixel = error.position / error.pixel;
+    let gap = gap.map_or_else(
+        || "no two objects have a gap between them".to_owned(),
+        |gap| {
+            let share = error.position / gap;
+            format!("{share:.1e} of the smallest gap, {gap:.3e} (allowed {GAP_SHARE})")
+        },
+    );
+    let verdict = match plan.choices.precision {
+        Precision::Single => "suffices",
+        Precision::Double => "because single does not suffice",
+    };
+    format!(
+        "precision: {name} {verdict}: in single, positions are off by at most {:.1e} = {pixel:.1e} \
+         of a pixel's width there (allowed {PIXEL_SHARE}); {gap}",
+        error.position
+    )
+}
+
+fn intersection(scene: &Scene) -> String {
+    let implicit = |object: &&Object| matches!(object.shape, Shape::Implicit(_));
+    let implicits = scene
+        .objects
+        .iter()
+        .map(|o| &o.value)
+        .filter(implicit)
+        .count();
+    let count = scene.objects.len();
+    let mut text = format!(
+        "intersection: each ray asks a list of {count} {}; what lanes leave undecided goes to the \
+         exact ladder",
+        if count == 1 { "object" } else { "objects" }
+    );
+    if implicits > 0 {
+        text.push_str(&format!(
+            "; {implicits} implicit by equal steps and bisection, not certified"
+        ));
+    }
+    text
+}
+
+fn sampler(scene: &Scene, plan: &Plan) -> String {
+    let name = match scene.image.sampler {
+        SamplerKind::Independent => "independent numbers",
+        SamplerKind::Stratified => "strata",
+        SamplerKind::Sobol => "Sobol' points with Owen scrambling",
+        SamplerKind::Center => "Sobol' points with Owen scrambling, through the pixel's centre",
+    };
+    let replicates = plan.choices.replicates;
+    let reached = replicates.count(scene.image.spp);
+    let law = match replicates {
+        Replicates::Fixed(_) => "",
+        Replicates::Growing => ", growing with the samples",
+    };
+    let error = if reached > 1 {
+        "from which the standard error comes"
+    } else {
+        "so that the standard error stays unknown"
+    };
+    format!("sampler: {name}; replicates: {reached}{law}, {error}")
+}
+
+fn depth(scene: &Scene) -> String {
+    match scene.image.max_depth {
+        Some(depth) => {
+            format!("paths: at most {depth} segments; some go on to measure what that cuts off")
+        }
+        None => "paths: of any length; Russian roulette ends them without bias".to_owned(),
+    }
+}
+
+fn memory(scene: &Scene, plan: &Plan) -> String {
+    let [width, height] = scene.image.size.map(u64::from);
+    let sums = width * height * Pixels::bytes_per_pixel(plan.choices.replicates) as u64;
+    let spectra = match &plan.tables {
+        Tables::Single(tables) => tables.0.spectra.bytes(),
+        Tables::Double(tables) => tables.0.spectra.bytes(),
+    };
+    let mebibytes = |bytes: f64| bytes / f64::from(1 << 20);
+    format!(
+        "memory: {:.1} MiB of sums, {:.1} MiB of spectra",
+        mebibytes(sums as f64),
+        mebibytes(spectra as f64)
+    )
+}

@@ -123,7 +123,7 @@ pub fn smallest_gap(scene: &Scene) -> Option<f64> {
                 }
                 _ => bounds.gap(other_bounds),
             };
-            if gap > 0.0 {
+            if gap > ROUNDED * bounds.reach().max(other_bounds.reach()) {
                 smallest = smallest.min(gap);
             }
         }
@@ -135,7 +135,7 @@ pub fn smallest_gap(scene: &Scene) -> Option<f64> {
 /// width of a pixel there, for the object where their ratio is worst; scene units.
 ///
 /// A point goes to object coordinates and back: with |o| up to the scene's reach s, the local
-/// error E of `shape::lanes` times the row sums of the map, plus the rounding of the result.
+/// errors Eᵢ of `shape::lanes` carried through the map, plus the rounding of the result.
 pub fn worst_error(
     scene: &Scene,
     roundoff: f64,
@@ -157,15 +157,17 @@ pub fn worst_error(
         let Some(inverse) = inverse_of(&to_world) else {
             continue;
         };
-        let row_sum = |m: &Affine| {
-            m.rows
-                .iter()
-                .map(|r| r[0].abs() + r[1].abs() + r[2].abs())
-                .fold(0.0, f64::max)
+        let row_sum = |r: &[f64; 4]| r[0].abs() + r[1].abs() + r[2].abs();
+        let local = inverse
+            .rows
+            .map(|r| 6.5 * roundoff * (row_sum(&r) * reach + r[3].abs() + 1.0));
+        let back = |r: &[f64; 4]| {
+            r[0].abs() * local[0]
+                + r[1].abs() * local[1]
+                + r[2].abs() * local[2]
+                + 4.0 * roundoff * (row_sum(r) + r[3].abs())
         };
-        let offset = |m: &Affine| m.rows.iter().map(|r| r[3].abs()).fold(0.0, f64::max);
-        let local = 6.5 * roundoff * (row_sum(&inverse) * reach + offset(&inverse) + 1.0);
-        let position = local * row_sum(&to_world) + 4.0 * roundoff * (reach + offset(&to_world));
+        let position = to_world.rows.iter().map(back).fold(0.0, f64::max);
         let distance = translation(&to_world).length();
         let width = match scene.camera.projection {
             Projection::Perspective { .. } => pixel * distance,

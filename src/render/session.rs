@@ -1,7 +1,11 @@
 //! From plan to picture: passes until enough, and what was measured on the way.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use rayon::prelude::*;
+
+use super::bins::{BinGrid, Bins};
 use super::pass;
 use super::tile::{Instructions, Tile, Window};
 use crate::film::pixels::{Estimate, to_rgb};
@@ -59,6 +63,26 @@ pub struct Share {
 /// Renders. Passes are over the whole window and their sizes are fixed before they begin, so that
 /// stopping between them favours no sample.
 pub fn render(plan: &Plan, request: &Request, progress: &mut dyn Progress) -> Rendered {
+    let tiles = request.window.tiles().into_iter();
+    let tiles = tiles.map(|window| Tile::new(window, plan.choices.replicates));
+    run(plan, request, tiles.collect(), progress)
+}
+
+/// Renders, and sums radiance by pixel and bin of wavelength besides.
+pub fn render_binned(
+    plan: &Plan,
+    request: &Request,
+    grid: &Arc<BinGrid>,
+    progress: &mut dyn Progress,
+) -> Rendered {
+    let tiles = request.window.tiles().into_iter().map(|window| Tile {
+        bins: Some(Bins::new(window.pixels(), Arc::clone(grid))),
+        ..Tile::new(window, plan.choices.replicates)
+    });
+    run(plan, request, tiles.collect(), progress)
+}
+
+fn run(plan: &Plan, request: &Request, tiles: Vec<Tile>, progress: &mut dyn Progress) -> Rendered {
     let start = Instant::now();
     let mut rendered = Rendered {
         window: request.window,
@@ -67,12 +91,7 @@ pub fn render(plan: &Plan, request: &Request, progress: &mut dyn Progress) -> Re
         rungs: Rungs::default(),
         not_a_number: 0,
         first_not_a_number: None,
-        tiles: request
-            .window
-            .tiles()
-            .into_iter()
-            .map(|window| Tile::new(window, plan.choices.replicates))
-            .collect(),
+        tiles,
     };
     while rendered.samples < request.samples {
         let size = next_pass(&rendered, request, start.elapsed());
@@ -148,11 +167,28 @@ impl Rendered {
         self.estimates(|xyz| xyz)
     }
 
+    /// Every pixel's mean radiance in a bin, row by row; `None` where bins were not asked for.
+    pub fn bin(&self, bin: usize) -> Option<Vec<f64>> {
+        let wanted = self.tiles.iter().all(|tile| tile.bins.is_some());
+        let mean = |tile: &Tile, pixel: usize| {
+            let bins = tile.bins.as_ref();
+            bins.map_or(f64::NAN, |bins| bins.mean(pixel, bin, self.samples))
+        };
+        wanted.then(|| self.image(f64::NAN, mean))
+    }
+
     fn estimates(&self, channels: impl Fn([f64; 3]) -> [f64; 3] + Copy) -> Vec<Estimate> {
         let empty = Estimate {
             mean: [0.0; 3],
             standard_error: [f64::NAN; 3],
         };
+        self.image(empty, |tile, pixel| {
+            tile.pixels.estimate(pixel, self.samples, channels)
+        })
+    }
+
+    /// A value for each pixel, row by row.
+    fn image<V: Copy>(&self, empty: V, value: impl Fn(&Tile, usize) -> V) -> Vec<V> {
         let mut image = vec![empty; self.window.pixels()];
         let width = self.window.width() as usize;
         for tile in &self.tiles {
@@ -160,7 +196,7 @@ impl Rendered {
             for pixel in 0..tile.window.pixels() {
                 let x = (tile.window.x0 - self.window.x0) as usize + pixel % tile_width;
                 let y = (tile.window.y0 - self.window.y0) as usize + pixel / tile_width;
-                image[y * width + x] = tile.pixels.estimate(pixel, self.samples, channels);
+                image[y * width + x] = value(tile, pixel);
             }
         }
         image
@@ -169,15 +205,32 @@ impl Rendered {
     /// Mean luminance; pixels are scrambled independently, so their squared standard errors add.
     pub fn mean_luminance(&self) -> MeanLuminance {
         let pixels = self.window.pixels() as f64;
+        // Tiles side by side, then their sums in order: the same bits on any number of threads.
+        let sums: Vec<[f64; 2]> = self
+            .tiles
+            .par_iter()
+            .map(|tile| self.luminance(tile))
+            .collect();
         let (mut sum, mut squares) = (0.0, 0.0);
-        for estimate in self.xyz() {
-            sum += estimate.mean[1];
-            squares += estimate.standard_error[1] * estimate.standard_error[1];
+        for [own_sum, own_squares] in sums {
+            sum += own_sum;
+            squares += own_squares;
         }
         MeanLuminance {
             value: sum / pixels,
             standard_error: squares.sqrt() / pixels,
         }
+    }
+
+    /// Σ Y and Σ (standard error of Y)² of a tile's pixels.
+    fn luminance(&self, tile: &Tile) -> [f64; 2] {
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for pixel in 0..tile.window.pixels() {
+            let estimate = tile.pixels.estimate(pixel, self.samples, |xyz| xyz);
+            sum += estimate.mean[1];
+            squares += estimate.standard_error[1] * estimate.standard_error[1];
+        }
+        [sum, squares]
     }
 
     /// Share of the luminance that `max_depth` cuts off.

@@ -1,5 +1,6 @@
 //! Tiles: the unit of work of one thread.
 
+use super::bins::Bins;
 use crate::film::pixels::Pixels;
 use crate::integrate::chunk::{self, CHUNK, Workspace};
 use crate::integrate::develop::Spectrometer;
@@ -64,6 +65,8 @@ pub struct Tile {
     pub window: Window,
     /// Its sums, row by row.
     pub pixels: Pixels,
+    /// Its spectral sums, where they are wanted.
+    pub bins: Option<Bins>,
     /// Which arithmetic decided its rays.
     pub rungs: Rungs,
     /// Sum and sum of squares of the luminance beyond `max_depth`, by sample.
@@ -80,6 +83,7 @@ impl Tile {
         Self {
             window,
             pixels: Pixels::new(window.pixels(), replicates),
+            bins: None,
             rungs: Rungs::default(),
             beyond: chunk::Beyond::default(),
             not_a_number: 0,
@@ -133,11 +137,15 @@ impl Tile {
         workspace: &Workspace<T, C>,
     ) {
         let width = self.window.width();
-        for (request, xyz) in requests.iter().zip(&workspace.tristimulus) {
+        for (slot, (request, xyz)) in requests.iter().zip(&workspace.tristimulus).enumerate() {
             let xyz = xyz.map(Scalar::to_f64);
             if xyz.iter().all(|v| v.is_finite()) {
                 let pixel = (request.y - self.window.y0) * width + request.x - self.window.x0;
                 self.pixels.add(pixel as usize, request.sample, xyz);
+                if let Some(bins) = &mut self.bins {
+                    let rows = &workspace.rows;
+                    bins.add(pixel as usize, &rows.radiance[slot], rows.row[slot]);
+                }
             } else {
                 self.not_a_number += 1;
                 self.first_not_a_number.get_or_insert(*request);

@@ -107,7 +107,7 @@ impl Replicates {
 pub struct Identity<L: Lanes> {
     /// Hash of seed, pixel and replicate.
     pub key: L::Int,
-    /// Index within the replicate.
+    /// Index within the replicate; with its bits reversed for the sequences that shuffle it.
     pub index: L::Int,
 }
 
@@ -165,7 +165,10 @@ impl Sequence {
     ) -> Identity<L> {
         Identity {
             key: self.keys.pixel(l, x, y, replicate),
-            index,
+            index: match self.kind {
+                SamplerKind::Sobol | SamplerKind::Center => index.reversed(),
+                SamplerKind::Independent | SamplerKind::Stratified => index,
+            },
         }
     }
 
@@ -192,7 +195,8 @@ impl Sequence {
                         let coordinate = inlined(
                             #[inline(always)]
                             |dimension: usize, slot: Slot, component: u32| {
-                                let digits = sobol::digits(l, dimension, id.index, self.bits);
+                                let digits =
+                                    sobol::digits(l, dimension, id.index.reversed(), self.bits);
                                 l.uniform(sobol::scrambled(l, digits, seed(slot, component)))
                             },
                         );

@@ -47,18 +47,6 @@ const fn columns(s: usize, a: u32, m: [u32; 3]) -> [u32; 32] {
     v
 }
 
-/// The bits of each lane in reverse order.
-#[inline(always)]
-pub fn reverse_bits<L: Lanes>(l: L, x: L::Int) -> L::Int {
-    let swap =
-        |x: L::Int, by: u32, mask: u32| (x.right(by) & l.int(mask)) | (x & l.int(mask)).left(by);
-    let x = swap(x, 1, 0x5555_5555);
-    let x = swap(x, 2, 0x3333_3333);
-    let x = swap(x, 4, 0x0f0f_0f0f);
-    let x = swap(x, 8, 0x00ff_00ff);
-    x.right(16) | x.left(16)
-}
-
 /// A seeded permutation of 32-bit numbers in which bit k depends on bits 0 … k alone, each flip
 /// close to random: Owen's nested uniform scramble of bit-reversed numbers (S. Laine and
 /// T. Karras 2011; round constants of N. Vegdahl, "Building a Better LK Hash", 2021).
@@ -106,18 +94,12 @@ pub fn digits<L: Lanes>(l: L, dimension: usize, index: L::Int, bits: u32) -> L::
 /// 32 random bits of a scrambled coordinate, most significant first.
 #[inline(always)]
 pub fn scrambled<L: Lanes>(l: L, digits: L::Int, seed: L::Int) -> L::Int {
-    reverse_bits(l, nested_scramble(l, digits, seed))
+    nested_scramble(l, digits, seed).reversed()
 }
 
 /// The index in a random order that keeps every aligned block of 2ᵏ indices together, so that
-/// prefixes stay well stratified (Burley 2020, section 5).
+/// prefixes stay well stratified (Burley 2020, section 5); from the index with its bits reversed.
 #[inline(always)]
-pub fn shuffled<L: Lanes>(l: L, index: L::Int, seed: L::Int) -> L::Int {
-    reverse_bits(l, nested_scramble(l, reverse_bits(l, index), seed))
-}
-
-/// The same from an index whose bits are already reversed.
-#[inline(always)]
-pub fn shuffled_reversed<L: Lanes>(l: L, reversed_index: L::Int, seed: L::Int) -> L::Int {
-    reverse_bits(l, nested_scramble(l, reversed_index, seed))
+pub fn shuffled<L: Lanes>(l: L, reversed_index: L::Int, seed: L::Int) -> L::Int {
+    nested_scramble(l, reversed_index, seed).reversed()
 }

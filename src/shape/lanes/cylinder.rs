@@ -1,19 +1,18 @@
 //! The capped cylinder x² + y² ≤ 1, |z| ≤ 1 in lanes.
 
-use super::{LaneRay, LaneShape, Span, reach, slab};
+use super::{LaneRay, LaneShape, LaneSurface, Span, reach, slab};
 use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 
-/// The side as a circle about the foot of the perpendicular in the plane (as for the sphere, with
-/// √2 in place of √3), the caps as a slab.
+/// The side as a circle about the foot of the perpendicular in the plane (bounds as for the
+/// sphere, with √2 in place of √3), the caps as a slab.
 #[inline(always)]
 pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
     let u = <L::Scalar as Scalar>::ROUNDOFF;
     let one = l.real(1.0);
     let o = shape.inverse.point(l, ray.origin);
     let d = shape.inverse.vector(l, ray.direction);
-    let e0 = shape.origin_error(l, ray);
-    let dd = l.splat(shape.direction_error);
+    let (e0, dd) = shape.largest_errors(l, ray, 2);
 
     let across = d.x.mul_add(d.x, d.y * d.y);
     let inverse_square = one / across;
@@ -23,14 +22,14 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     let squared = fx.mul_add(fx, fy * fy);
     let c = one - squared;
     let e = foot_t.abs().mul_add(dd, e0);
-    let c_error = (e * e).mul_add(
-        l.real(16.0),
-        e.mul_add(l.real(8.0), l.real(8.0 * u)) * squared.max(one),
-    );
+    let q = dd * inverse_length;
+    let relative = (q * q).mul_add(l.real(64.0), e.mul_add(l.real(8.0), l.real(8.0 * u)));
+    let c_error = (e * e).mul_add(l.real(16.0), relative * squared.max(one));
     let root = c.max(l.real(0.0)).sqrt();
     let half = root * inverse_length;
-    let mut side_error = (c_error / root + e * l.real(4.0))
-        .mul_add(inverse_length, (foot_t.abs() + half) * l.real(8.0 * u));
+    let along = q.mul_add(l.real(6.0), e * l.real(4.0));
+    let mut side_error =
+        (c_error / root + along).mul_add(inverse_length, (foot_t.abs() + half) * l.real(8.0 * u));
     let mut side_near = foot_t - half;
     let mut side_far = foot_t + half;
     let mut side_hit = c.gt(c_error);
@@ -38,10 +37,11 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     // Along the axis the relative error of the direction across it is unbounded.
     let parallel = !across.sqrt().gt(dd * l.real(8.0));
     if parallel.any() {
-        let drift = (across.sqrt() + dd * l.real(2.0)).mul_add(reach(l, o, d), e0 * l.real(2.0))
+        let drift = (across.sqrt() + dd * l.real(2.0))
+            .mul_add(reach(l, o, d, e0), e0 * l.real(2.0))
             * l.real(1.0 + 1e-6);
         let radius = o.x.mul_add(o.x, o.y * o.y).sqrt();
-        let far = l.real(1e30);
+        let far = l.real(f64::INFINITY);
         side_near = l.select(parallel, -far, side_near);
         side_far = l.select(parallel, far, side_far);
         side_error = l.select(parallel, l.real(0.0), side_error);
@@ -55,10 +55,10 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
         l,
         o.z,
         d.z,
-        e0,
-        dd,
+        shape.origin_error(l, ray, 2),
+        l.splat(shape.direction_error[2]),
         #[inline(always)]
-        || reach(l, o, d),
+        || reach(l, o, d, e0),
     );
     let near = side_near.max(caps.near);
     let far = side_far.min(caps.far);
@@ -80,22 +80,39 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
 
 /// A cap where |z| exceeds the distance from the axis, else the side.
 #[inline(always)]
-pub fn surface<L: Lanes>(l: L, local: Vec3<L::Real>) -> (Vec3<L::Real>, Vec3<L::Real>) {
+fn on_cap<L: Lanes>(local: Vec3<L::Real>) -> (L::Mask, L::Real) {
     let radius = local.x.mul_add(local.x, local.y * local.y).sqrt();
-    let cap = local.z.abs().gt(radius);
+    (local.z.abs().gt(radius), radius)
+}
+
+/// The canonical point moved onto side or cap.
+#[inline(always)]
+pub fn surface<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, p: Vec3<L::Real>) -> LaneSurface<L> {
+    let local = shape.inverse.point(l, p);
+    let (cap, radius) = on_cap::<L>(local);
     let zero = l.real(0.0);
     let face = l.real(1.0).copysign(local.z);
     let (x, y) = (local.x / radius, local.y / radius);
-    (
-        Vec3::new(
-            l.select(cap, local.x, x),
-            l.select(cap, local.y, y),
-            l.select(cap, face, local.z),
-        ),
-        Vec3::new(
-            l.select(cap, zero, x),
-            l.select(cap, zero, y),
-            l.select(cap, face, zero),
-        ),
-    )
+    let point = Vec3::new(
+        l.select(cap, local.x, x),
+        l.select(cap, local.y, y),
+        l.select(cap, face, local.z),
+    );
+    let normal = Vec3::new(
+        l.select(cap, zero, x),
+        l.select(cap, zero, y),
+        l.select(cap, face, zero),
+    );
+    LaneSurface {
+        point: shape.forward.point(l, point),
+        normal: shape.inverse.transposed(l, normal).normalized(l),
+    }
+}
+
+/// The coordinate of a cap made exact.
+#[inline(always)]
+pub fn snapped<L: Lanes>(l: L, local: Vec3<L::Real>) -> Vec3<L::Real> {
+    let (cap, _) = on_cap::<L>(local);
+    let face = l.real(1.0).copysign(local.z);
+    Vec3::new(local.x, local.y, l.select(cap, face, local.z))
 }

@@ -1,11 +1,11 @@
 //! The first rung: every shape in lanes, answering hit, miss or undecided.
 //!
 //! A ray is taken to canonical coordinates by the rounded inverse matrix. With unit roundoff u,
-//! row sums Rᵢ = Σⱼ|mᵢⱼ| and s = max|o|, the computed local origin is within
-//! E = 6u (max Rᵢ · s + max|bᵢ| + 1) and the local direction within D = 6u · max Rᵢ of the exact
-//! one in every component (four rounded coefficients and three fused operations each; the 1 pays
-//! for the shape's own constants). What follows from E and D is bounded shape by shape; a lane
-//! that a bound cannot decide is left to the certified ladder.
+//! row sums Rᵢ = Σⱼ|mᵢⱼ| and s = max|o|, component i of the computed local origin is within
+//! Eᵢ = 6u (Rᵢ s + |bᵢ| + 1) and that of the local direction within Dᵢ = 6u Rᵢ of the exact one
+//! (four rounded coefficients and three fused operations each; the 1 pays for the shape's own
+//! constants). What follows from E and D is bounded shape by shape; a lane that a bound cannot
+//! decide is left to the certified ladder.
 
 mod cube;
 mod cylinder;
@@ -66,34 +66,56 @@ pub struct LaneShape<T> {
     pub inverse: Rows<T>,
     /// Canonical coordinates → world.
     pub forward: Rows<T>,
-    /// 6u max Rᵢ.
-    pub direction_error: T,
-    /// 6u (max|bᵢ| + 1).
-    pub offset_error: T,
+    /// The planes of each canonical coordinate.
+    planes: [Planes<T>; 3],
+    /// 6u Rᵢ.
+    pub direction_error: [T; 3],
+    /// 6u (|bᵢ| + 1).
+    pub offset_error: [T; 3],
 }
 
 impl<T: Scalar> LaneShape<T> {
     /// Rounds a placement whose inverse is given.
     pub fn new(kind: Option<ShapeKind>, forward: &Affine, inverse: &Affine) -> Self {
-        let largest = |f: &dyn Fn(&[f64; 4]) -> f64| inverse.rows.iter().map(f).fold(0.0, f64::max);
-        let row_sum = largest(&|r| r[0].abs() + r[1].abs() + r[2].abs());
-        let offset = largest(&|r| r[3].abs());
-        // One more unit roundoff in the bounds pays for rounding the bounds themselves.
+        // One more half unit roundoff in the bounds pays for rounding the bounds themselves.
         let unit = 6.5 * T::ROUNDOFF;
         Self {
             kind,
             inverse: Rows::from_f64(&inverse.rows),
             forward: Rows::from_f64(&forward.rows),
-            direction_error: T::from_f64(unit * row_sum),
-            offset_error: T::from_f64(unit * (offset + 1.0)),
+            planes: inverse.rows.each_ref().map(Planes::new),
+            direction_error: inverse
+                .rows
+                .map(|r| T::from_f64(unit * (r[0].abs() + r[1].abs() + r[2].abs()))),
+            offset_error: inverse.rows.map(|r| T::from_f64(unit * (r[3].abs() + 1.0))),
         }
     }
 
-    /// E for a packet of rays.
+    /// Eᵢ for a packet of rays.
     #[inline(always)]
-    fn origin_error<L: Lanes<Scalar = T>>(&self, l: L, ray: &LaneRay<L>) -> L::Real {
-        ray.extent
-            .mul_add(l.splat(self.direction_error), l.splat(self.offset_error))
+    fn origin_error<L: Lanes<Scalar = T>>(&self, l: L, ray: &LaneRay<L>, i: usize) -> L::Real {
+        ray.extent.mul_add(
+            l.splat(self.direction_error[i]),
+            l.splat(self.offset_error[i]),
+        )
+    }
+
+    /// The largest Eᵢ and Dᵢ of the first `count` components.
+    #[inline(always)]
+    fn largest_errors<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        ray: &LaneRay<L>,
+        count: usize,
+    ) -> (L::Real, L::Real) {
+        let mut direction = self.direction_error[0];
+        let mut offset = self.offset_error[0];
+        for i in 1..count {
+            direction = direction.larger(self.direction_error[i]);
+            offset = offset.larger(self.offset_error[i]);
+        }
+        let direction = l.splat(direction);
+        (ray.extent.mul_add(direction, l.splat(offset)), direction)
     }
 
     /// Where the lines meet the shape.
@@ -116,26 +138,86 @@ impl<T: Scalar> LaneShape<T> {
         }
     }
 
-    /// The canonical point of a hit, moved onto the surface, and the canonical outward normal
-    /// (+z for flat shapes; not unit).
+    /// What a hit near the world point p looks like.
     #[inline(always)]
-    pub fn surface<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        local: Vec3<L::Real>,
-    ) -> (Vec3<L::Real>, Vec3<L::Real>) {
+    pub fn surface<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> LaneSurface<L> {
         match self.kind {
-            Some(ShapeKind::Sphere) => sphere::surface(l, local),
-            Some(ShapeKind::Cube) => cube::surface(l, local),
-            Some(ShapeKind::Cylinder) => cylinder::surface(l, local),
+            Some(ShapeKind::Sphere) => sphere::surface(l, self, p),
+            Some(ShapeKind::Cube) => cube::surface(l, self, p),
+            Some(ShapeKind::Cylinder) => cylinder::surface(l, self, p),
             Some(ShapeKind::Disk | ShapeKind::Rectangle | ShapeKind::Plane) | None => {
-                let zero = l.real(0.0);
-                (
-                    Vec3::new(local.x, local.y, zero),
-                    Vec3::new(zero, zero, l.real(1.0)),
-                )
+                let plane = &self.planes[2];
+                let normal = plane.normal(l);
+                LaneSurface {
+                    point: plane.onto(l, normal, p, l.splat(plane.middle)),
+                    normal,
+                }
             }
         }
+    }
+
+    /// Canonical coordinates of a point on the surface: those that are constant on a face are
+    /// exact, so that textures do not flicker between cells there.
+    #[inline(always)]
+    pub fn local<L: Lanes<Scalar = T>>(&self, l: L, point: Vec3<L::Real>) -> Vec3<L::Real> {
+        let local = self.inverse.point(l, point);
+        match self.kind {
+            Some(ShapeKind::Disk | ShapeKind::Rectangle | ShapeKind::Plane) => {
+                Vec3::new(local.x, local.y, l.real(0.0))
+            }
+            Some(ShapeKind::Cube) => cube::snapped(l, local),
+            Some(ShapeKind::Cylinder) => cylinder::snapped(l, local),
+            Some(ShapeKind::Sphere) | None => local,
+        }
+    }
+}
+
+/// A point moved onto a surface, and the unit outward normal there (+z of flat shapes).
+#[derive(Clone, Copy)]
+pub struct LaneSurface<L: Lanes> {
+    /// The point, scene units about the camera.
+    pub point: Vec3<L::Real>,
+    /// The normal.
+    pub normal: Vec3<L::Real>,
+}
+
+/// The parallel planes of one canonical coordinate: x = −1, 0, 1 are n · p = middle − half,
+/// middle, middle + half.
+#[derive(Debug, Clone, Copy)]
+pub struct Planes<T> {
+    normal: [T; 3],
+    middle: T,
+    half: T,
+}
+
+impl<T: Scalar> Planes<T> {
+    /// From the row of the inverse that computes the coordinate.
+    fn new(row: &[f64; 4]) -> Self {
+        let [x, y, z, shift] = *row;
+        let length = (x * x + y * y + z * z).sqrt();
+        Self {
+            normal: [x, y, z].map(|c| T::from_f64(c / length)),
+            middle: T::from_f64(-shift / length),
+            half: T::from_f64(1.0 / length),
+        }
+    }
+
+    #[inline(always)]
+    fn normal<L: Lanes<Scalar = T>>(&self, l: L) -> Vec3<L::Real> {
+        let [x, y, z] = self.normal;
+        Vec3::new(l.splat(x), l.splat(y), l.splat(z))
+    }
+
+    /// The foot of p on the plane n · p = level.
+    #[inline(always)]
+    fn onto<L: Lanes<Scalar = T>>(
+        &self,
+        _l: L,
+        normal: Vec3<L::Real>,
+        p: Vec3<L::Real>,
+        level: L::Real,
+    ) -> Vec3<L::Real> {
+        p.along(normal, level - normal.dot(p))
     }
 }
 
@@ -185,7 +267,7 @@ fn slab<L: Lanes>(
         let drift = (d.abs() + dd).mul_add(reach(), e) * l.real(1.0 + 1e-6);
         let inside = parallel & (o.abs() + drift).lt(one);
         let outside = parallel & (o.abs() - drift).gt(one);
-        let far = l.real(1e30);
+        let far = l.real(f64::INFINITY);
         slab.near = l.select(parallel, -far, slab.near);
         slab.far = l.select(parallel, far, slab.far);
         slab.error = l.select(parallel, l.real(0.0), slab.error);
@@ -195,9 +277,11 @@ fn slab<L: Lanes>(
     slab
 }
 
-/// Farthest |t| at which a line can be inside the canonical box: (|o|₁ + 3)/max|dᵢ|, doubled for
-/// the errors of o and d.
+/// Farthest |t| at which a line can be inside the canonical box: (|o|₁ + e + 3)/max|dᵢ|, where o
+/// is within `e`, doubled for the errors of d: those halve max|dᵢ| at most, or else they are
+/// larger than half of it and the drift |dᵢ| t of every axis is bounded all the same.
 #[inline(always)]
-fn reach<L: Lanes>(l: L, o: Vec3<L::Real>, d: Vec3<L::Real>) -> L::Real {
-    (o.x.abs() + o.y.abs() + o.z.abs() + l.real(3.0)) * l.real(2.0) / d.max_abs()
+fn reach<L: Lanes>(l: L, o: Vec3<L::Real>, d: Vec3<L::Real>, e: L::Real) -> L::Real {
+    let sum = o.x.abs() + o.y.abs() + o.z.abs();
+    (sum + (e + l.real(3.0))) * l.real(2.0) / d.max_abs()
 }

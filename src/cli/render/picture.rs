@@ -1,0 +1,162 @@
+//! From sums to channels and attributes.
+
+use etalon::film::provenance::Provenance;
+use etalon::film::{Attribute, Channel, Picture, names};
+use etalon::plan::choose::Precision;
+use etalon::plan::explain;
+use etalon::render::tile::Instructions;
+use etalon::scene::SamplerKind;
+
+use super::super::args::Render;
+use super::super::error::CommandError;
+use super::job::Job;
+use super::layers;
+use super::report::{Outcome, settings};
+
+/// The picture with all its layers and where it comes from.
+pub fn assemble(
+    arguments: &Render,
+    job: &Job,
+    outcome: &Outcome<'_>,
+    instructions: Instructions,
+) -> Result<Picture, CommandError> {
+    let rendered = outcome.rendered;
+    let window = job.window;
+    let mut picture = Picture::new(window.width() as usize, window.height() as usize);
+    let estimates = rendered.rgb();
+    let single = |v: [f64; 3]| v.map(|v| v as f32);
+    let mean: Vec<_> = estimates.iter().map(|e| single(e.mean)).collect();
+    picture.push_triple(names::BEAUTY, names::RGB, &mean);
+    let replicates = job.plan.choices.replicates.count(rendered.samples);
+    if replicates > 1 {
+        let errors: Vec<_> = estimates.iter().map(|e| single(e.standard_error)).collect();
+        picture.push_triple(names::STANDARD_ERROR, names::RGB, &errors);
+    }
+    let samples = vec![rendered.samples; window.pixels()];
+    picture
+        .channels
+        .push(Channel::integer(names::SAMPLES, samples));
+    layers::push(&mut picture, arguments, job, rendered)?;
+    picture
+        .attributes
+        .extend(provenance(job, outcome, replicates).attributes());
+    further(&mut picture, arguments, job, outcome, instructions);
+    Ok(picture)
+}
+
+fn provenance(job: &Job, outcome: &Outcome<'_>, replicates: u32) -> Provenance {
+    let rendered = outcome.rendered;
+    let scene = &job.scene;
+    let error = rendered.mean_luminance().standard_error;
+    let limited = scene.image.max_depth.is_some();
+    Provenance {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        scene_path: scene.source.path.clone(),
+        scene_text: scene.source.text.clone(),
+        panel: scene.panel.clone(),
+        seed: scene.image.seed,
+        spp: rendered.samples.into(),
+        sampler: sampler(scene.image.sampler).to_owned(),
+        replicates,
+        precision: match job.plan.choices.precision {
+            Precision::Single => "f32",
+            Precision::Double => "f64",
+        }
+        .to_owned(),
+        wavelengths: job.plan.choices.wavelengths,
+        plan: explain::explain(scene, &job.plan).join("\n"),
+        max_depth: scene.image.max_depth,
+        seconds: rendered.seconds,
+        samples_per_second: outcome.samples_per_second(),
+        nan_count: rendered.not_a_number,
+        standard_error: error.is_finite().then_some(error),
+        energy_cut: limited.then(|| rendered.cut_off().value),
+        lights_left_out: job.plan.left_out.clone(),
+    }
+}
+
+/// The sampler's name in scene files.
+fn sampler(kind: SamplerKind) -> &'static str {
+    match kind {
+        SamplerKind::Independent => "independent",
+        SamplerKind::Stratified => "stratified",
+        SamplerKind::Sobol => "sobol",
+        SamplerKind::Center => "center",
+    }
+}
+
+/// What this command knows beyond the provenance of every picture.
+fn further(
+    picture: &mut Picture,
+    arguments: &Render,
+    job: &Job,
+    outcome: &Outcome<'_>,
+    instructions: Instructions,
+) {
+    let rendered = outcome.rendered;
+    let mut text = |name: &str, value: String| {
+        let attribute = (name.to_owned(), Attribute::Text(value));
+        picture.attributes.push(attribute);
+    };
+    let settings: Vec<_> = settings(arguments, job)
+        .iter()
+        .map(|(key, value)| format!("{key}={value}"))
+        .collect();
+    if !settings.is_empty() {
+        text("settings", settings.join("\n"));
+    }
+    if let Some(crop) = arguments.crop {
+        let ([x0, y0], [x1, y1]) = (crop.from, crop.to);
+        let [width, height] = job.scene.image.size;
+        text("crop", format!("{x0},{y0},{x1},{y1} of {width}x{height}"));
+    }
+    text("instructions", instruction_name(instructions).to_owned());
+    text("rungs", rungs(outcome, job));
+    let planned = job.scene.image.spp;
+    if rendered.samples < planned && job.scene.image.sampler == SamplerKind::Stratified {
+        text("sppPlanned", planned.to_string());
+    }
+    if job.scene.image.max_depth.is_some() {
+        let name = "energyCutStandardError".to_owned();
+        let error = Attribute::Double(rendered.cut_off().standard_error);
+        picture.attributes.push((name, error));
+    }
+}
+
+/// The name of an instruction set on the command line.
+fn instruction_name(instructions: Instructions) -> &'static str {
+    match instructions {
+        #[cfg(target_arch = "x86_64")]
+        Instructions::Avx512(_) => "avx512",
+        #[cfg(target_arch = "x86_64")]
+        Instructions::Avx2(_) => "avx2",
+        #[cfg(target_arch = "x86_64")]
+        Instructions::Sse2(_) => "sse2",
+        #[cfg(target_arch = "aarch64")]
+        Instructions::Neon(_) => "neon",
+        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+        Instructions::Fallback(_) => "fallback",
+    }
+}
+
+/// Who has decided the rays, as shares.
+fn rungs(outcome: &Outcome<'_>, job: &Job) -> String {
+    let rungs = outcome.rendered.rungs;
+    let share = |part: u64, whole: u64| part as f64 / whole.max(1) as f64;
+    let lanes = match job.plan.choices.precision {
+        Precision::Single => "f32",
+        Precision::Double => "f64",
+    };
+    let ladder = rungs.ladder;
+    let questions = ladder.double + ladder.double_double + ladder.exact;
+    format!(
+        "{} rays: {:.9} decided in lanes of {lanes}, {:.9} taken to the ladder; its {questions} \
+         questions: {:.9} decided in f64, {:.9} in double-double, {:.9} exactly",
+        rungs.rays,
+        share(rungs.rays - rungs.undecided.min(rungs.rays), rungs.rays),
+        share(rungs.undecided, rungs.rays),
+        share(ladder.double, questions),
+        share(ladder.double_double, questions),
+        share(ladder.exact, questions),
+    )
+}

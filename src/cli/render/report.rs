@@ -1,0 +1,129 @@
+//! What a render has to say at its end.
+
+use std::fmt::Write as _;
+
+use etalon::render::Rendered;
+use etalon::scene::SamplerKind;
+
+use super::super::args::Render;
+use super::job::Job;
+
+/// A finished render and how it ended.
+pub struct Outcome<'a> {
+    /// The sums and what was measured.
+    pub rendered: &'a Rendered,
+    /// Whether the user ended it.
+    pub interrupted: bool,
+}
+
+impl Outcome<'_> {
+    /// Camera paths a second.
+    pub fn samples_per_second(&self) -> f64 {
+        let samples = self.rendered.window.pixels() as f64 * f64::from(self.rendered.samples);
+        samples / self.rendered.seconds
+    }
+}
+
+/// The lines on stdout: what was measured.
+pub fn lines(arguments: &Render, job: &Job, outcome: &Outcome<'_>) -> String {
+    let rendered = outcome.rendered;
+    let mut text = format!("{}: ", job.output.display());
+    if outcome.interrupted && rendered.samples < job.scene.image.spp {
+        text.push_str("interrupted after ");
+    }
+    text.push_str(&count(job, rendered));
+    let _ = write!(
+        text,
+        " in {:.2} s, {:.2} M samples/s; mean luminance {}",
+        rendered.seconds,
+        outcome.samples_per_second() * 1e-6,
+        luminance(rendered)
+    );
+    if job.scene.image.max_depth.is_some() {
+        let share = rendered.cut_off();
+        let _ = write!(
+            text,
+            "; cut off by max_depth {} ± {}",
+            percent(share.value),
+            percent(share.standard_error)
+        );
+    }
+    let _ = write!(text, "; {} NaN", rendered.not_a_number);
+    if let Some(command) = replay(arguments, job, rendered) {
+        let _ = write!(text, "\nfirst NaN: {command}");
+    }
+    text
+}
+
+/// The samples reached. Strata are cut for a number of samples, and stay cut for it.
+fn count(job: &Job, rendered: &Rendered) -> String {
+    let (done, planned) = (rendered.samples, job.scene.image.spp);
+    if done < planned && job.scene.image.sampler == SamplerKind::Stratified {
+        format!("{done} spp (of strata for {planned})")
+    } else {
+        format!("{done} spp")
+    }
+}
+
+fn luminance(rendered: &Rendered) -> String {
+    let mean = rendered.mean_luminance();
+    if mean.standard_error.is_nan() {
+        return format!("{:.6}, standard error unknown with 1 replicate", mean.value);
+    }
+    let relative = mean
+        .relative_error()
+        .map_or_else(String::new, |relative| format!(" ({})", percent(relative)));
+    format!("{:.6} ± {:.2e}{relative}", mean.value, mean.standard_error)
+}
+
+/// A share as a percentage with three significant digits.
+pub fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent == 0.0 {
+        return "0 %".to_owned();
+    }
+    let decimals = 2.0 - percent.abs().log10().floor();
+    if (0.0..7.0).contains(&decimals) {
+        format!("{percent:.*} %", decimals as usize)
+    } else {
+        format!("{percent:.2e} %")
+    }
+}
+
+/// The command that follows the first sample that was not a number.
+fn replay(arguments: &Render, job: &Job, rendered: &Rendered) -> Option<String> {
+    let first = rendered.first_not_a_number?;
+    let mut text = format!("etalon replay {}", quoted(&job.scene.source.path));
+    if let Some(panel) = &job.scene.panel {
+        let _ = write!(text, " --panel {}", quoted(panel));
+    }
+    for (key, value) in settings(arguments, job) {
+        let _ = write!(text, " --set {}", quoted(&format!("{key}={value}")));
+    }
+    let _ = write!(
+        text,
+        " --pixel {},{} --sample {}",
+        first.x, first.y, first.sample
+    );
+    Some(text)
+}
+
+/// Everything laid over the scene file but the panel, the samples a pixel that were planned
+/// included.
+pub fn settings(arguments: &Render, job: &Job) -> Vec<(String, String)> {
+    let mut settings = arguments.overrides(None).set;
+    if arguments.time.is_some() && !arguments.sets_spp() {
+        settings.push(("image.spp".to_owned(), job.scene.image.spp.to_string()));
+    }
+    settings
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./=,:+@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}

@@ -1,0 +1,124 @@
+//! Spectral pictures: radiance summed by pixel and bin of wavelength.
+//!
+//! A sample of a path stands for the cell of the wavelength grid it lies in ([`grid`]); its
+//! radiance goes to the bins in the proportions in which they share the cell, so that whatever is
+//! constant over a cell is binned exactly. Nothing finer than a cell (0.06 nm in the middle of the
+//! band, 1 nm at its red end) is resolved.
+//!
+//! [`grid`]: crate::spectrum::grid
+
+use std::sync::Arc;
+
+use crate::math::lanes::Scalar;
+use crate::spectrum::grid::{CELLS, Cumulative, LONGEST, SHORTEST};
+
+/// Neighbouring bins of equal width.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BinGrid {
+    centres: Vec<f64>,
+    /// By cell, where its bins are in `shares`; one more than cells.
+    starts: Vec<u32>,
+    /// Bin, and (number of cells × shared width)/(bin width): what the cell's radiance adds to
+    /// the bin's mean.
+    shares: Vec<(u32, f64)>,
+}
+
+/// Why bins cannot be had.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum BinError {
+    /// A bin reaches out of the wavelengths that paths carry.
+    #[error("the bin at {centre} nm reaches out of {SHORTEST} nm to {LONGEST} nm")]
+    Outside {
+        /// Its middle, nm.
+        centre: f64,
+    },
+    /// Not positive, not finite, or more bins than there are cells.
+    #[error("the bins' width of {width} nm is not one of at most {CELLS} bins")]
+    Width {
+        /// What was asked for, nm.
+        width: f64,
+    },
+}
+
+impl BinGrid {
+    /// Bins of width `step` nm about `from`, `from + step` … up to `to` nm.
+    ///
+    /// # Errors
+    /// [`BinError`] where a bin would not be inside the band of 360 nm to 830 nm, or where there
+    /// would be more bins than cells.
+    pub fn new(from: f64, to: f64, step: f64) -> Result<Self, BinError> {
+        // Rounded decimals such as (0.7 − 0.4)/0.1 may fall just short of a whole number.
+        let steps = ((to - from) / step + 1e-9).floor();
+        if !(step > 0.0 && steps >= 0.0 && steps < CELLS as f64) {
+            return Err(BinError::Width { width: step });
+        }
+        let centres: Vec<f64> = (0..=steps as u32)
+            .map(|i| from + f64::from(i) * step)
+            .collect();
+        let half = step / 2.0;
+        let inside = |c: f64| c - half >= SHORTEST && c + half <= LONGEST;
+        if let Some(&centre) = centres.iter().find(|&&c| !inside(c)) {
+            return Err(BinError::Outside { centre });
+        }
+        let cumulative = Cumulative::new();
+        let mut starts = vec![0];
+        let mut shares = Vec::new();
+        for cell in 0..CELLS {
+            let (low, high) = (cumulative.edge(cell), cumulative.edge(cell + 1));
+            for (bin, centre) in centres.iter().enumerate() {
+                let shared = high.min(centre + half) - low.max(centre - half);
+                if shared > 0.0 {
+                    shares.push((bin as u32, CELLS as f64 * shared / step));
+                }
+            }
+            starts.push(shares.len() as u32);
+        }
+        Ok(Self {
+            centres,
+            starts,
+            shares,
+        })
+    }
+
+    /// Middles of the bins, nm.
+    pub fn centres(&self) -> &[f64] {
+        &self.centres
+    }
+
+    fn shares(&self, cell: usize) -> &[(u32, f64)] {
+        &self.shares[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    }
+}
+
+/// Sums by pixel and bin.
+#[derive(Debug, Clone)]
+pub struct Bins {
+    grid: Arc<BinGrid>,
+    sums: Vec<f64>,
+}
+
+impl Bins {
+    /// Zero sums for this many pixels.
+    pub fn new(pixels: usize, grid: Arc<BinGrid>) -> Self {
+        let sums = vec![0.0; pixels * grid.centres.len()];
+        Self { grid, sums }
+    }
+
+    /// Adds a sample of a pixel: radiance at C wavelengths, whose cells are `row`, `row` + 4096/C
+    /// …; a pixel's samples must come in order.
+    pub fn add<T: Scalar, const C: usize>(&mut self, pixel: usize, radiance: &[T; C], row: u32) {
+        let count = self.grid.centres.len();
+        let sums = &mut self.sums[pixel * count..][..count];
+        for (i, radiance) in radiance.iter().enumerate() {
+            let radiance = radiance.to_f64() / C as f64;
+            for (bin, share) in self.grid.shares(i * (CELLS / C) + row as usize) {
+                sums[*bin as usize] += radiance * share;
+            }
+        }
+    }
+
+    /// Mean radiance of a pixel in a bin after `samples` samples, W·m⁻²·sr⁻¹·nm⁻¹.
+    pub fn mean(&self, pixel: usize, bin: usize, samples: u32) -> f64 {
+        self.sums[pixel * self.grid.centres.len() + bin] / f64::from(samples)
+    }
+}

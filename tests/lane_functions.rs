@@ -1,0 +1,386 @@
+//! Elementary functions and vectors in lanes: errors in units in the last place against f64 or
+//! double-double, and the same bits on every instruction set.
+
+use std::f64::consts::TAU;
+
+use etalon::math::functions::{atan2_turns, ln, sin_cos_turns};
+use etalon::math::lanes::{Int, Lanes, Real};
+use etalon::math::vec3::Vec3;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+use crate::lanes_support::{Job, Kernel, PRECISIONS, Precision, map_everywhere, on_each};
+
+/// A unit in the last place of numbers in [1, 2).
+fn ulp_of_one(precision: Precision) -> f64 {
+    2.0 * precision.roundoff()
+}
+
+/// Distance of neighbouring numbers at |x|, normal range.
+fn ulp(precision: Precision, x: f64) -> f64 {
+    libm::exp2(libm::log2(x.abs()).floor()) * ulp_of_one(precision)
+}
+
+struct SinCos;
+impl Kernel<1, 2> for SinCos {
+    #[inline(always)]
+    fn apply<L: Lanes>(&self, l: L, [u]: [L::Real; 1]) -> [L::Real; 2] {
+        let (s, c) = sin_cos_turns(l, u);
+        [s, c]
+    }
+}
+
+struct Ln;
+impl Kernel<1, 1> for Ln {
+    #[inline(always)]
+    fn apply<L: Lanes>(&self, l: L, [x]: [L::Real; 1]) -> [L::Real; 1] {
+        [ln(l, x)]
+    }
+}
+
+struct Atan2;
+impl Kernel<2, 1> for Atan2 {
+    #[inline(always)]
+    fn apply<L: Lanes>(&self, l: L, [y, x]: [L::Real; 2]) -> [L::Real; 1] {
+        [atan2_turns(l, y, x)]
+    }
+}
+
+/// sin 2πu and cos 2πu to about 1e-16 relative: reduced exactly to an eighth of a turn, and 2π in
+/// two parts.
+fn sin_cos_truth(u: f64) -> (f64, f64) {
+    const TAU_LOW: f64 = 2.449_293_598_294_706_4e-16;
+    let quarter = (4.0 * u).round_ties_even();
+    let r = u - 0.25 * quarter;
+    let x = TAU * r;
+    let low = r.mul_add(TAU, -x) + r * TAU_LOW;
+    let (s, c) = (libm::sin(x), libm::cos(x));
+    let (s, c) = (s + low * c, c - low * s);
+    match (quarter as i64).rem_euclid(4) {
+        0 => (s, c),
+        1 => (c, -s),
+        2 => (-s, -c),
+        _ => (-c, s),
+    }
+}
+
+/// A dense grid of [-2, 2], and numbers close to every eighth.
+fn turns(precision: Precision) -> Vec<f64> {
+    let steps = 1 << 17;
+    let mut all: Vec<f64> = (-2 * steps..=2 * steps)
+        .map(|i| f64::from(i) / f64::from(steps) + 1e-7 * f64::from(i % 17))
+        .filter(|u| u.abs() <= 2.0)
+        .collect();
+    for i in -16..=16 {
+        let eighth = f64::from(i) / 8.0;
+        all.push(eighth);
+        for k in 1..40 {
+            let away = libm::exp2(-f64::from(k) - 4.0);
+            all.extend(
+                [eighth - away, eighth + away]
+                    .into_iter()
+                    .filter(|u| u.abs() <= 2.0),
+            );
+        }
+    }
+    all.extend([0.0, -0.0, 5e-324, 1e-300, 1e-38]);
+    all.into_iter().map(|u| precision.rounded(u)).collect()
+}
+
+#[test]
+fn sine_and_cosine_are_within_their_bounds() {
+    for (precision, relative, absolute) in
+        [(Precision::Single, 2.5, 1.0), (Precision::Double, 2.5, 1.0)]
+    {
+        let u = turns(precision);
+        let [s, c] = map_everywhere(precision, &SinCos, &[u.clone()]);
+        let (mut worst, mut worst_absolute) = (0.0_f64, 0.0_f64);
+        for ((&u, &s), &c) in u.iter().zip(&s).zip(&c) {
+            let (sine, cosine) = sin_cos_truth(u);
+            for (value, truth) in [(s, sine), (c, cosine)] {
+                let error = (value - truth).abs();
+                worst_absolute = worst_absolute.max(error / ulp_of_one(precision));
+                if truth.abs() > 1e-30 {
+                    worst = worst.max(error / ulp(precision, truth));
+                }
+                assert!(value.abs() <= 1.0, "{value} at {u}");
+            }
+        }
+        println!("{precision:?}: sin, cos {worst} ulp; {worst_absolute} ulp of 1");
+        assert!(worst <= relative && worst_absolute <= absolute);
+    }
+}
+
+#[test]
+fn the_logarithm_is_within_its_bound() {
+    for (precision, lowest, highest) in [
+        (Precision::Single, -126, 127),
+        (Precision::Double, -1022, 1023),
+    ] {
+        let mut x = Vec::new();
+        for i in 0..200_000 {
+            x.push(0.5 + f64::from(i) / 80_000.0);
+        }
+        for e in lowest..=highest {
+            let power = libm::exp2(f64::from(e));
+            x.extend(
+                [1.0, 1.0 + 1e-7, 1.2, 1.414_213, 1.414_214, 1.7, 1.999_999].map(|m| m * power),
+            );
+        }
+        for k in 1..50 {
+            let away = libm::exp2(-f64::from(k));
+            x.extend([1.0 - away, 1.0 + away]);
+        }
+        let x: Vec<f64> = x.into_iter().map(|x| precision.rounded(x)).collect();
+        let [y] = map_everywhere(precision, &Ln, &[x.clone()]);
+        let mut worst = 0.0_f64;
+        for (&x, &y) in x.iter().zip(&y) {
+            let truth = libm::log(x);
+            if truth == 0.0 {
+                assert_eq!(y, 0.0);
+                continue;
+            }
+            worst = worst.max((y - truth).abs() / ulp(precision, truth));
+        }
+        println!("{precision:?}: ln {worst} ulp");
+        // libm's own half unit is in the figure for f64.
+        assert!(worst <= 3.5, "{worst}");
+    }
+}
+
+#[test]
+fn the_angle_is_within_its_bound() {
+    // Truth in f64 and its division by 2π are half a unit of ½ off by themselves.
+    for (precision, bound) in [(Precision::Single, 0.3), (Precision::Double, 0.6)] {
+        let (mut ys, mut xs) = (Vec::new(), Vec::new());
+        let mut add = |y: f64, x: f64| {
+            ys.push(precision.rounded(y));
+            xs.push(precision.rounded(x));
+        };
+        for i in 0..60_000 {
+            let angle = TAU * (f64::from(i) + 0.3) / 60_000.0;
+            let scale = [1.0, 1e-9, 1e9, 3.7][i as usize % 4];
+            add(scale * libm::sin(angle), scale * libm::cos(angle));
+        }
+        let special = [0.0, -0.0, 1.0, -1.0, 1e-12, -1e-12, 1e12, -1e12];
+        for y in special {
+            for x in special {
+                add(y, x);
+            }
+        }
+        let [turns] = map_everywhere(precision, &Atan2, &[ys.clone(), xs.clone()]);
+        let mut worst = 0.0_f64;
+        for ((&y, &x), &turns) in ys.iter().zip(&xs).zip(&turns) {
+            if (x, y) == (0.0, 0.0) {
+                // (0, −0) is no direction: any finite angle will do.
+                assert!(turns.is_finite());
+                continue;
+            }
+            // The sign of zero: −½ and ½ are the same angle.
+            let truth = libm::atan2(y, x) / TAU;
+            let error = (turns - truth).abs();
+            worst = worst.max(error / ulp_of_one(precision));
+            assert!(turns.abs() <= 0.5);
+        }
+        println!("{precision:?}: atan2 {worst} ulp of 1, in turns");
+        // Absolute: small angles are differences from an eighth of a turn.
+        assert!(worst <= bound, "{worst}");
+    }
+}
+
+struct Frames;
+impl Kernel<3, 12> for Frames {
+    #[inline(always)]
+    fn apply<L: Lanes>(&self, l: L, [x, y, z]: [L::Real; 3]) -> [L::Real; 12] {
+        let n = Vec3::new(x, y, z).normalized(l);
+        let (s, t) = n.frame(l);
+        let across = s.cross(t);
+        [
+            n.x, n.y, n.z, s.x, s.y, s.z, t.x, t.y, t.z, across.x, across.y, across.z,
+        ]
+    }
+}
+
+#[test]
+fn frames_are_orthonormal_and_right_handed() {
+    let mut rng = Pcg64Mcg::seed_from_u64(11);
+    let mut columns = [Vec::new(), Vec::new(), Vec::new()];
+    let mut add = |v: [f64; 3]| {
+        for (column, v) in columns.iter_mut().zip(v) {
+            column.push(v);
+        }
+    };
+    for axis in 0..3 {
+        for sign in [1.0, -1.0] {
+            let mut v = [0.0, -0.0, 0.0];
+            v[axis] = sign;
+            add(v);
+        }
+    }
+    // Near the pole where the formula divides by 1 + z.
+    add([1e-9, -1e-9, -1.0]);
+    add([1e-4, 1e-5, -1.0]);
+    for _ in 0..20_000 {
+        add([0; 3].map(|_| rng.random_range(-1.0..1.0)));
+    }
+    for precision in PRECISIONS {
+        let out = map_everywhere(precision, &Frames, &columns);
+        let vector = |k: usize, i: usize| {
+            glam::DVec3::new(out[3 * k][i], out[3 * k + 1][i], out[3 * k + 2][i])
+        };
+        let mut worst = 0.0_f64;
+        for i in 0..out[0].len() {
+            let [n, s, t, across] = [0, 1, 2, 3].map(|k| vector(k, i));
+            for error in [
+                n.length() - 1.0,
+                s.length() - 1.0,
+                t.length() - 1.0,
+                n.dot(s),
+                n.dot(t),
+                s.dot(t),
+                (across - n).length(),
+            ] {
+                worst = worst.max(error.abs() / precision.roundoff());
+            }
+        }
+        println!("{precision:?}: frames within {worst} u");
+        assert!(worst <= 8.0, "{worst}");
+    }
+}
+
+/// Integer and conversion operations on nasty words, as words and reals.
+struct Words;
+impl Job for Words {
+    type Output = (Vec<u32>, Vec<f64>);
+    fn run<L: Lanes>(&self, l: L) -> Self::Output {
+        use etalon::math::lanes::{Mask, Scalar};
+        let (mut words, mut reals) = (Vec::new(), Vec::new());
+        let mut rng = Pcg64Mcg::seed_from_u64(3);
+        let special = [0, 1, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff, 0x00ff_ffff];
+        for round in 0..400 {
+            let a: [u32; 16] = std::array::from_fn(|i| {
+                if round == 0 {
+                    special[i % 6]
+                } else {
+                    rng.random()
+                }
+            });
+            let b: [u32; 16] = std::array::from_fn(|i| {
+                if round == 0 {
+                    special[i / 3]
+                } else {
+                    rng.random()
+                }
+            });
+            let (x, y) = (l.load_int(&a), l.load_int(&b));
+            let results = [
+                (x.plus(y), std::array::from_fn(|i| a[i].wrapping_add(b[i]))),
+                (x.minus(y), std::array::from_fn(|i| a[i].wrapping_sub(b[i]))),
+                (x.times(y), std::array::from_fn(|i| a[i].wrapping_mul(b[i]))),
+                (x.left(7), a.map(|a| a << 7)),
+                (x.right(9), a.map(|a| a >> 9)),
+                (x ^ y, std::array::from_fn(|i| a[i] ^ b[i])),
+                (x & y, std::array::from_fn(|i| a[i] & b[i])),
+                (x | y, std::array::from_fn(|i| a[i] | b[i])),
+                (x.reversed(), a.map(u32::reverse_bits)),
+            ];
+            for (k, (got, want)) in results.into_iter().enumerate() {
+                let mut stored = [0u32; 16];
+                l.store_int(got, &mut stored);
+                assert_eq!(stored[..L::COUNT], want[..L::COUNT], "operation {k}");
+                words.extend(&stored[..8]);
+            }
+            let below = x.below(y).bits();
+            let equal = x.same(x).bits();
+            for i in 0..L::COUNT {
+                assert_eq!(below >> i & 1 == 1, a[i] < b[i]);
+            }
+            assert_eq!(equal, ((1u64 << L::COUNT) - 1) as u32);
+            let uniform = l.uniform(x);
+            let small = x.right(8);
+            let real = l.to_real(small);
+            let back = l.truncate(real + l.real(0.0));
+            for (i, &a) in a.iter().enumerate().take(L::COUNT) {
+                let u = l.lane(uniform, i).to_f64();
+                assert!((0.0..1.0).contains(&u));
+                // Rounded down, by less than the last bit kept.
+                let exact = f64::from(a) / 4_294_967_296.0;
+                assert!(u <= exact && exact - u < libm::exp2(-f64::from(L::UNIFORM_BITS)));
+                assert_eq!(l.lane(real, i).to_f64(), f64::from(a >> 8));
+                assert_eq!(l.int_lane(back, i), a >> 8);
+                if i < 8 {
+                    reals.push(u);
+                }
+            }
+        }
+        (words, reals)
+    }
+}
+
+#[test]
+fn words_wrap_alike_in_every_kind_of_lane() {
+    let mut words: Vec<Vec<u32>> = Vec::new();
+    for precision in PRECISIONS {
+        let results = on_each(precision, &Words);
+        for (name, result) in &results[1..] {
+            assert_eq!(result, &results[0].1, "{precision:?} on {name}");
+        }
+        words.extend(results.into_iter().take(1).map(|(_, (words, _))| words));
+    }
+    assert_eq!(words[0], words[1]);
+}
+
+/// Comparison, min, max, rounding with NaN, infinities and signed zeros.
+struct Odd;
+impl Kernel<2, 9> for Odd {
+    #[inline(always)]
+    fn apply<L: Lanes>(&self, l: L, [a, b]: [L::Real; 2]) -> [L::Real; 9] {
+        let truth = |m| l.select(m, l.real(1.0), l.real(0.0));
+        [
+            a.min(b),
+            a.max(b),
+            a.floor(),
+            a.round(),
+            a.copysign(b),
+            truth(a.lt(b)),
+            truth(a.le(b)),
+            truth(a.same(b)),
+            a.mul_add(b, a),
+        ]
+    }
+}
+
+#[test]
+fn odd_numbers_are_treated_alike() {
+    let odd = [
+        0.0,
+        -0.0,
+        1.0,
+        -1.5,
+        2.5,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NAN,
+        1e-40,
+        1e30,
+    ];
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    for x in odd {
+        for y in odd {
+            a.push(x);
+            b.push(y);
+        }
+    }
+    for precision in PRECISIONS {
+        let [min, max, floor, round, ..] = map_everywhere(precision, &Odd, &[a.clone(), b.clone()]);
+        for (i, (&a, &b)) in a.iter().zip(&b).enumerate() {
+            let (a, b) = (precision.rounded(a), precision.rounded(b));
+            let expect =
+                |got: f64, want: f64| assert!(got == want || (got.is_nan() && want.is_nan()));
+            expect(min[i], a.min(b));
+            expect(max[i], a.max(b));
+            expect(floor[i], a.floor());
+            expect(round[i], a.round_ties_even());
+        }
+    }
+}

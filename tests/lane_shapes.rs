@@ -1,0 +1,368 @@
+//! Soundness of the first rung: what lanes call certain must be what the certified ladder says of
+//! the very same rounded ray, and both crossings must lie within the stated error.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a malformed oracle file must fail the test"
+)]
+
+use std::collections::HashMap;
+
+use etalon::math::affine::Affine;
+use etalon::math::lanes::{Lanes, Mask, Scalar};
+use etalon::math::vec3::Vec3;
+use etalon::shape::lanes::{LaneRay, LaneShape};
+use etalon::shape::{Placed, Ray, ShapeKind, Tally};
+use glam::DVec3;
+use rand::{Rng, RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+use crate::lanes_support::{Job, PRECISIONS, Precision, best, on_each};
+use crate::shape_ladder::{KINDS, critical_point, cubed, decade, matrix};
+
+/// One ray against one shape, in f64.
+struct Case {
+    placed: Placed,
+    ray: Ray,
+}
+
+/// What lanes say of a case, with the ray as it was rounded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Answer {
+    ray: Ray,
+    near: f64,
+    far: f64,
+    error: f64,
+    hit: bool,
+    miss: bool,
+}
+
+struct Spans<'a>(&'a [Case]);
+
+impl Job for Spans<'_> {
+    type Output = Vec<Answer>;
+    fn run<L: Lanes>(&self, l: L) -> Vec<Answer> {
+        let mut answers = Vec::new();
+        for case in self.0 {
+            let shape = LaneShape::<L::Scalar>::new(
+                Some(case.placed.kind()),
+                case.placed.to_world(),
+                &case.placed.inverse(),
+            );
+            let span = l.vectorize(
+                #[inline(always)]
+                || {
+                    let ray = LaneRay::<L>::new(
+                        Vec3::splat(l, case.ray.origin),
+                        Vec3::splat(l, case.ray.direction),
+                    );
+                    shape.span(l, &ray)
+                },
+            );
+            let lane = |x| l.lane(x, 0).to_f64();
+            let rounded =
+                |v: DVec3| DVec3::from_array(v.to_array().map(|x| L::Scalar::from_f64(x).to_f64()));
+            answers.push(Answer {
+                ray: Ray {
+                    origin: rounded(case.ray.origin),
+                    direction: rounded(case.ray.direction),
+                },
+                near: lane(span.near),
+                far: lane(span.far),
+                error: lane(span.error),
+                hit: span.hit.any(),
+                miss: span.miss.any(),
+            });
+        }
+        answers
+    }
+}
+
+#[derive(Default)]
+struct Record {
+    asked: usize,
+    undecided: usize,
+    hits: usize,
+    wrong: Vec<String>,
+    /// Largest error of a crossing in units of its bound.
+    tightest: f64,
+}
+
+impl Record {
+    fn check(&mut self, case: &Case, answer: &Answer) {
+        if !answer.ray.is_valid() {
+            return;
+        }
+        self.asked += 1;
+        let truth = case.placed.crossings(&answer.ray, &mut Tally::default());
+        let what = || {
+            let (kind, to_world) = (case.placed.kind(), case.placed.to_world());
+            format!("{kind:?} {to_world:?}\n  {answer:?}\n  {truth:?}")
+        };
+        if answer.hit && answer.miss {
+            self.wrong.push(what());
+        } else if answer.miss {
+            if truth.is_some() {
+                self.wrong.push(what());
+            }
+        } else if answer.hit {
+            self.hits += 1;
+            let Some(truth) = &truth else {
+                self.wrong.push(what());
+                return;
+            };
+            let off = (answer.near - truth.near.t)
+                .abs()
+                .max((answer.far - truth.far.t).abs());
+            // The truth itself is rounded to f64, by half a unit.
+            let rounding = f64::ROUNDOFF * truth.near.t.abs().max(truth.far.t.abs());
+            let share = (off - rounding).max(0.0) / answer.error;
+            if share > 1.0 || !answer.error.is_finite() {
+                self.wrong.push(format!("{share} of the bound: {}", what()));
+            } else {
+                self.tightest = self.tightest.max(share);
+            }
+        } else {
+            self.undecided += 1;
+        }
+    }
+
+    fn check_all(cases: &[Case], precision: Precision) -> Self {
+        let mut record = Self::default();
+        for (case, answer) in cases.iter().zip(best(precision, &Spans(cases))) {
+            record.check(case, &answer);
+        }
+        record
+    }
+
+    fn assert_sound(&self, what: &str) {
+        println!(
+            "{what}: {} rays, {} hits, {:.2} % undecided, closest to a bound {:.3}",
+            self.asked,
+            self.hits,
+            100.0 * self.undecided as f64 / self.asked as f64,
+            self.tightest,
+        );
+        assert!(
+            self.wrong.is_empty(),
+            "{what}: {} wrong, such as\n{}",
+            self.wrong.len(),
+            self.wrong[..self.wrong.len().min(3)].join("\n")
+        );
+    }
+}
+
+/// The oracle's rays, with unit directions as the loop has them.
+fn oracle_cases() -> Vec<Case> {
+    let read = |text: &'static str| {
+        csv::ReaderBuilder::new()
+            .flexible(true)
+            .from_reader(text.as_bytes())
+            .deserialize()
+            .map(Result::unwrap)
+            .collect::<Vec<HashMap<String, String>>>()
+    };
+    let number = |row: &HashMap<String, String>, name: &str| -> f64 { row[name].parse().unwrap() };
+    let transforms: HashMap<String, Affine> = read(include_str!("data/transforms.csv"))
+        .iter()
+        .map(|row| {
+            let rows = [0, 1, 2].map(|i| [0, 1, 2, 3].map(|j| number(row, &format!("m{i}{j}"))));
+            (row["transform"].clone(), Affine { rows })
+        })
+        .collect();
+    read(include_str!("data/primitives.csv"))
+        .iter()
+        .map(|row| {
+            let kind = match row["shape"].as_str() {
+                "sphere" => ShapeKind::Sphere,
+                "cube" => ShapeKind::Cube,
+                "cylinder" => ShapeKind::Cylinder,
+                "rect" => ShapeKind::Rectangle,
+                "disk" => ShapeKind::Disk,
+                other => panic!("unknown shape {other}"),
+            };
+            let vector = |names: [&str; 3]| DVec3::from_array(names.map(|n| number(row, n)));
+            Case {
+                placed: Placed::new(kind, &transforms[&row["transform"]]).unwrap(),
+                ray: Ray {
+                    origin: vector(["ox", "oy", "oz"]),
+                    direction: vector(["dx", "dy", "dz"]).normalize(),
+                },
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn lanes_never_contradict_the_ladder_on_the_oracles_rays() {
+    let cases = oracle_cases();
+    assert_eq!(cases.len(), 3000);
+    for precision in PRECISIONS {
+        let record = Record::check_all(&cases, precision);
+        record.assert_sound(&format!("oracle, {precision:?}"));
+        // The file is made of hard cases: near misses down to 1e-15 of the size, origins 1e8 off.
+        let decided = record.asked - record.undecided;
+        assert!(decided > 1_000 && record.hits > 500);
+    }
+}
+
+/// A random ray aimed within a hair of an edge, rim or silhouette, from near or far.
+fn nasty(rng: &mut impl Rng, to_world: &Affine, precision: Precision) -> Ray {
+    let p = critical_point(rng);
+    let finest = libm::log10(precision.roundoff()) - 1.0;
+    let epsilon = match rng.random_range(0..5) {
+        0 => 0.0,
+        _ => decade(rng, finest, 0.0),
+    };
+    let aim = p + cubed(rng) * epsilon;
+    let mut local = match rng.random_range(0..5) {
+        0 => p.cross(cubed(rng)),
+        1 => DVec3::AXES[rng.random_range(0..3)],
+        2 => DVec3::new(p.y, -p.x, 0.0),
+        3 => DVec3::Z + cubed(rng) * decade(rng, finest, 0.0),
+        _ => cubed(rng),
+    };
+    if rng.random_bool(0.05) {
+        local[rng.random_range(0..3)] = 0.0;
+    }
+    let away = match rng.random_range(0..4) {
+        0 => 0.0,
+        1 => rng.random_range(-3.0..3.0),
+        _ => decade(rng, -2.0, 6.0),
+    };
+    let direction = to_world.vector(local);
+    let direction = if direction.length() > 0.0 {
+        direction.normalize()
+    } else {
+        DVec3::X
+    };
+    Ray {
+        origin: to_world.point(aim - local * away),
+        direction,
+    }
+}
+
+fn nasty_cases(precision: Precision, seed: u64, rounds: usize) -> Vec<Case> {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let mut cases = Vec::new();
+    for round in 0..rounds {
+        let kind = KINDS[round % KINDS.len()];
+        let to_world = if rng.random_bool(0.5) {
+            matrix(&mut rng)
+        } else {
+            gentle(&mut rng)
+        };
+        let placed = Placed::new(kind, &to_world).unwrap();
+        for _ in 0..4 {
+            let mut ray = nasty(&mut rng, &to_world, precision);
+            if rng.random_bool(0.1) {
+                // From the very centre, and from far off the shape.
+                ray.origin = to_world.point(cubed(&mut rng) * decade(&mut rng, -20.0, 3.0));
+            }
+            cases.push(Case {
+                placed: placed.clone(),
+                ray,
+            });
+        }
+    }
+    cases
+}
+
+/// A transform such as scenes have.
+fn gentle(rng: &mut impl Rng) -> Affine {
+    let mut rows = [[0.0; 4]; 3];
+    for (i, row) in rows.iter_mut().enumerate() {
+        for entry in row.iter_mut() {
+            *entry = rng.random_range(-1.0..1.0);
+        }
+        row[i] += 2.0;
+        row[3] *= 10.0;
+    }
+    Affine { rows }
+}
+
+#[test]
+fn lanes_never_contradict_the_ladder_on_nasty_rays() {
+    for precision in PRECISIONS {
+        let cases = nasty_cases(precision, 0x0050_facd, 12_000);
+        for kind in KINDS {
+            let mine: Vec<Case> = cases
+                .iter()
+                .filter(|case| case.placed.kind() == kind)
+                .map(|case| Case {
+                    placed: case.placed.clone(),
+                    ray: case.ray,
+                })
+                .collect();
+            let record = Record::check_all(&mine, precision);
+            record.assert_sound(&format!("{kind:?}, {precision:?}"));
+            assert!(record.hits > 100 && record.undecided < record.asked);
+        }
+    }
+}
+
+#[test]
+fn ordinary_rays_are_nearly_always_decided() {
+    let mut rng = Pcg64Mcg::seed_from_u64(77);
+    for precision in PRECISIONS {
+        let cases: Vec<Case> = (0..6_000)
+            .map(|round| {
+                let to_world = gentle(&mut rng);
+                let aim = to_world.point(1.5 * cubed(&mut rng));
+                let origin = to_world.point(6.0 * cubed(&mut rng));
+                Case {
+                    placed: Placed::new(KINDS[round % KINDS.len()], &to_world).unwrap(),
+                    ray: Ray {
+                        origin,
+                        direction: (aim - origin).normalize(),
+                    },
+                }
+            })
+            .collect();
+        let record = Record::check_all(&cases, precision);
+        record.assert_sound(&format!("ordinary, {precision:?}"));
+        let share = record.undecided as f64 / record.asked as f64;
+        // A bound that says nothing would be sound, too. The width of the doubtful band is some
+        // tens of units of roundoff for these transforms.
+        let band = 1e3 * precision.roundoff() + 2.0 / record.asked as f64;
+        assert!(share <= band, "{share}");
+    }
+}
+
+#[test]
+fn all_instruction_sets_give_the_same_spans() {
+    for precision in PRECISIONS {
+        let cases = nasty_cases(precision, 4, 1_500);
+        let all = on_each(precision, &Spans(&cases));
+        for (name, answers) in &all[1..] {
+            for (a, b) in all[0].1.iter().zip(answers) {
+                let same = |x: f64, y: f64| crate::lanes_support::same_bits(x, y);
+                assert!(
+                    (a.hit, a.miss) == (b.hit, b.miss)
+                        && same(a.near, b.near)
+                        && same(a.far, b.far)
+                        && same(a.error, b.error),
+                    "{name}: {a:?} {b:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_wrong_span_is_noticed() {
+    let cases = nasty_cases(Precision::Double, 9, 300);
+    let mut record = Record::default();
+    for (case, mut answer) in cases.iter().zip(best(Precision::Double, &Spans(&cases))) {
+        // A bound a million times too small, as of a forgotten term.
+        answer.error *= 1e-6;
+        record.check(case, &answer);
+    }
+    assert!(record.wrong.len() > 10, "{}", record.wrong.len());
+    let mut record = Record::default();
+    for (case, mut answer) in cases.iter().zip(best(Precision::Double, &Spans(&cases))) {
+        (answer.hit, answer.miss) = (answer.miss, answer.hit);
+        record.check(case, &answer);
+    }
+    assert!(record.wrong.len() > 300);
+}

@@ -1,0 +1,928 @@
+//! Samplers: uniform margins, the variance that each kind of point set promises, scrambling that
+//! is what it claims, replicates that partition the samples; warps against their densities.
+//!
+//! False alarms: this module's random tests share the family level 2e-4 (Šidák over an upper bound
+//! of their number), seeds are fixed and nothing is tried twice.
+
+#![allow(clippy::unwrap_used, reason = "the truths file is part of the tests")]
+
+use std::f64::consts::{PI, TAU};
+
+use etalon::film::pixels::Pixels;
+use etalon::math::lanes::{Int, Lanes, Scalar};
+use etalon::sample::Slot;
+use etalon::sample::mis::power_weight;
+use etalon::sample::permute::permute;
+use etalon::sample::sequence::{Identity, Replicates, Sequence};
+use etalon::sample::sobol::nested_scramble;
+use etalon::sample::warp::{
+    cosine_hemisphere, cosine_hemisphere_pdf, square_to_disk, uniform_sphere,
+};
+use etalon::scene::SamplerKind;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+use crate::lanes_support::{Job, Kernel, PRECISIONS, Precision, best, map, on_each};
+use crate::statistics_support::{chi_square, moments, normal_p, sidak, t_test, variance_p};
+use crate::truths::{list, number, truth};
+
+/// Level of all random tests of this module together.
+const FAMILY: f64 = 2e-4;
+/// More than the number of single tests in it.
+const TESTS: usize = 2_000;
+
+fn level() -> f64 {
+    sidak(FAMILY, TESTS)
+}
+
+/// Which numbers to ask for.
+#[derive(Debug, Clone, Copy)]
+enum What {
+    Camera,
+    Pair(Slot, u32),
+    Single(Slot, u32),
+}
+
+/// Asks a sequence for the numbers of (x, y, replicate, index).
+struct Ask<'a> {
+    sequence: Sequence,
+    requests: &'a [[u32; 4]],
+    what: What,
+}
+
+impl Job for Ask<'_> {
+    type Output = Vec<[f64; 5]>;
+    fn run<L: Lanes>(&self, l: L) -> Vec<[f64; 5]> {
+        let mut all = Vec::with_capacity(self.requests.len());
+        for chunk in self.requests.chunks(L::COUNT) {
+            let mut columns = [[0; 16]; 4];
+            for (i, request) in chunk.iter().enumerate() {
+                for (column, &number) in columns.iter_mut().zip(request) {
+                    column[i] = number;
+                }
+            }
+            let mut out = [[L::Scalar::default(); 16]; 5];
+            l.vectorize(
+                #[inline(always)]
+                || {
+                    let [x, y, replicate, index] = columns.each_ref().map(
+                        #[inline(always)]
+                        |c| l.load_int(c),
+                    );
+                    let id: Identity<L> = self.sequence.identity(l, x, y, replicate, index);
+                    let zero = l.real(0.0);
+                    let numbers = match self.what {
+                        What::Camera => {
+                            let sample = self.sequence.camera(l, id, true);
+                            let ([u, v], [s, t]) = (sample.pixel, sample.lens);
+                            [u, v, sample.wavelength, s, t]
+                        }
+                        What::Pair(slot, depth) => {
+                            let slot = slot.at(l, l.int(depth));
+                            let [u, v] = self.sequence.pair(l, id, slot);
+                            [u, v, zero, zero, zero]
+                        }
+                        What::Single(slot, depth) => {
+                            let slot = slot.at(l, l.int(depth));
+                            let u = self.sequence.single(l, id, slot);
+                            [u, zero, zero, zero, zero]
+                        }
+                    };
+                    for (number, out) in numbers.into_iter().zip(&mut out) {
+                        l.store(number, out);
+                    }
+                },
+            );
+            all.extend((0..chunk.len()).map(|i| out.map(|column| column[i].to_f64())));
+        }
+        all
+    }
+}
+
+impl What {
+    fn width(self) -> usize {
+        match self {
+            Self::Camera => 5,
+            Self::Pair(..) => 2,
+            Self::Single(..) => 1,
+        }
+    }
+}
+
+const KINDS: [SamplerKind; 3] = [
+    SamplerKind::Independent,
+    SamplerKind::Stratified,
+    SamplerKind::Sobol,
+];
+const WHATS: [What; 5] = [
+    What::Camera,
+    What::Pair(Slot::Light, 0),
+    What::Pair(Slot::Bsdf, 3),
+    What::Single(Slot::Choice, 1),
+    What::Single(Slot::Roulette, 6),
+];
+
+fn sequence(kind: SamplerKind, seed: u64, spp: u32) -> Sequence {
+    Sequence::new(kind, seed, spp, Replicates::Fixed(1))
+}
+
+/// All samples 0 … n − 1 of `pixels` pixels, pixel by pixel.
+fn pixels_of(
+    precision: Precision,
+    sequence: Sequence,
+    what: What,
+    pixels: u32,
+    n: u32,
+) -> Vec<[f64; 5]> {
+    let requests: Vec<[u32; 4]> = (0..pixels)
+        .flat_map(|p| (0..n).map(move |i| [p % 64, p / 64, 0, i]))
+        .collect();
+    let requests = &requests;
+    best(
+        precision,
+        &Ask {
+            sequence,
+            requests,
+            what,
+        },
+    )
+}
+
+#[test]
+fn every_number_is_uniform_at_every_index() {
+    for precision in PRECISIONS {
+        for (kind, spp) in [
+            (SamplerKind::Independent, 256),
+            (SamplerKind::Stratified, 256),
+            (SamplerKind::Stratified, 700),
+            (SamplerKind::Sobol, 256),
+        ] {
+            let sequence = sequence(kind, 5, spp);
+            for what in WHATS {
+                // One number a pixel: those of a pixel are not independent of one another.
+                for index in [0, 1, 6, 200] {
+                    let requests: Vec<[u32; 4]> = (0..12_800)
+                        .map(|p| [p % 160, p / 160, p % 3, index])
+                        .collect();
+                    let requests = &requests;
+                    let drawn = best(
+                        precision,
+                        &Ask {
+                            sequence,
+                            requests,
+                            what,
+                        },
+                    );
+                    for column in 0..what.width() {
+                        let mut counts = [0; 64];
+                        for numbers in &drawn {
+                            assert!((0.0..1.0).contains(&numbers[column]));
+                            counts[(numbers[column] * 64.0) as usize] += 1;
+                        }
+                        let p = chi_square(&counts, &[200.0; 64]);
+                        assert!(p > level(), "{kind:?} {what:?} {index} {column}: {p:e}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_sample_does_not_depend_on_its_company() {
+    for precision in PRECISIONS {
+        for kind in KINDS {
+            for what in WHATS {
+                let sequence = sequence(kind, 7, 64);
+                let requests: Vec<[u32; 4]> =
+                    (0..999).map(|i| [i % 7, i / 100, i % 2, i % 64]).collect();
+                let together = best(
+                    precision,
+                    &Ask {
+                        sequence,
+                        requests: &requests,
+                        what,
+                    },
+                );
+                let mut reversed = requests.clone();
+                reversed.reverse();
+                let mut backwards = best(
+                    precision,
+                    &Ask {
+                        sequence,
+                        requests: &reversed,
+                        what,
+                    },
+                );
+                backwards.reverse();
+                assert_eq!(together, backwards);
+                for (name, other) in on_each(
+                    precision,
+                    &Ask {
+                        sequence,
+                        requests: &requests,
+                        what,
+                    },
+                ) {
+                    assert_eq!(together, other, "{name}");
+                }
+                // Another seed, another pixel: other numbers.
+                let sequence = self::sequence(kind, 8, 64);
+                let other = best(
+                    precision,
+                    &Ask {
+                        sequence,
+                        requests: &requests,
+                        what,
+                    },
+                );
+                assert!(together.iter().zip(&other).filter(|(a, b)| a == b).count() < 20);
+            }
+        }
+    }
+}
+
+/// Means over the samples of each pixel of f(number `column`).
+fn pixel_means(drawn: &[[f64; 5]], n: u32, column: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
+    drawn
+        .chunks(n as usize)
+        .map(|pixel| pixel.iter().map(|x| f(x[column])).sum::<f64>() / f64::from(n))
+        .collect()
+}
+
+/// Truth for the kind of point set: independent, jittered or stratified in one dimension.
+fn promised<'a>(kind: SamplerKind, names: [&'a str; 3]) -> &'a str {
+    match kind {
+        SamplerKind::Independent => names[0],
+        SamplerKind::Stratified => names[1],
+        SamplerKind::Sobol | SamplerKind::Center => names[2],
+    }
+}
+
+/// Runs both truths over all kinds and sizes; `spoil` may change numbers and must be noticed.
+fn variances(precision: Precision, spoil: impl Fn(u32, f64) -> f64) -> Vec<(String, f64)> {
+    let edge = truth("edge_variance");
+    let edge_at = number(&edge["setup"]["p"]);
+    let ramp = truth("ramp_variance");
+    let mut p_values = Vec::new();
+    for kind in KINDS {
+        for (edge_row, ramp_row) in list(&edge["exact"]["rows"])
+            .iter()
+            .zip(list(&ramp["exact"]["rows"]))
+        {
+            let n = number(&edge_row["N"]) as u32;
+            assert_eq!(n, number(&ramp_row["N"]) as u32);
+            let edge_variance =
+                number(&edge_row[promised(kind, ["var_independent", "var_jittered", "var_lhs"])]);
+            let names = ["var_independent", "var_jittered", "var_stratified_1d"];
+            let ramp_variance = number(&ramp_row[promised(kind, names)]);
+            for what in [What::Camera, What::Pair(Slot::Light, 2)] {
+                let mut drawn = pixels_of(precision, sequence(kind, 31, n), what, 2_000, n);
+                for (i, numbers) in drawn.iter_mut().enumerate() {
+                    for x in numbers {
+                        *x = spoil(i as u32 % n, *x);
+                    }
+                }
+                for column in 0..2 {
+                    let edge_means =
+                        pixel_means(&drawn, n, column, |x| f64::from(u8::from(x < edge_at)));
+                    let ramp_means = pixel_means(&drawn, n, column, |x| x);
+                    for (name, means, mean, variance) in [
+                        ("edge", edge_means, edge_at, edge_variance),
+                        ("ramp", ramp_means, 0.5, ramp_variance),
+                    ] {
+                        let what = format!("{name} {kind:?} {n} {what:?} {column}");
+                        if let Some(p) = variance_p(&means, mean, variance) {
+                            p_values.push((format!("variance, {what}"), p));
+                        }
+                        p_values.push((format!("mean, {what}"), t_test(&means, mean)));
+                    }
+                }
+            }
+        }
+    }
+    p_values
+}
+
+#[test]
+fn point_sets_have_the_variance_they_promise() {
+    for precision in PRECISIONS {
+        for (what, p) in variances(precision, |_, x| x) {
+            assert!(p > level(), "{precision:?} {what}: {p:e}");
+        }
+    }
+}
+
+#[test]
+fn a_shifted_or_clumped_point_set_is_noticed() {
+    // A fiftieth of the square missing at one side; every eighth sample taken twice.
+    let shifted = variances(Precision::Single, |_, x| 0.98 * x);
+    let caught = shifted.iter().filter(|(_, p)| *p < level()).count();
+    assert!(caught * 3 > shifted.len(), "{caught} of {}", shifted.len());
+    let last = std::cell::Cell::new(0.5);
+    let clumped = variances(Precision::Single, |i, x| {
+        if i % 8 == 7 {
+            last.get()
+        } else {
+            last.replace(x);
+            x
+        }
+    });
+    let caught = clumped.iter().filter(|(_, p)| *p < level()).count();
+    assert!(caught * 3 > clumped.len(), "{caught} of {}", clumped.len());
+}
+
+/// Whether 2ᵐ points have one in each elementary interval of area 2⁻ᵐ.
+fn is_net(points: &[[f64; 2]]) -> bool {
+    let m = points.len().trailing_zeros();
+    (0..=m).all(|a| {
+        let (across, down) = (1u32 << a, 1u32 << (m - a));
+        let mut seen = vec![false; points.len()];
+        for [u, v] in points {
+            let (i, j) = ((u * f64::from(across)) as u32, (v * f64::from(down)) as u32);
+            seen[(j * across + i) as usize] = true;
+        }
+        seen.into_iter().all(|s| s)
+    })
+}
+
+#[test]
+fn scrambled_sobol_points_are_nets_in_every_aligned_block() {
+    let sequence = sequence(SamplerKind::Sobol, 3, 1024);
+    for what in [
+        What::Camera,
+        What::Pair(Slot::Light, 0),
+        What::Pair(Slot::Bsdf, 5),
+    ] {
+        for pixel in pixels_of(Precision::Double, sequence, what, 24, 1024).chunks(1024) {
+            for m in 0..=10 {
+                for block in pixel.chunks(1 << m) {
+                    let points: Vec<[f64; 2]> = block.iter().map(|x| [x[0], x[1]]).collect();
+                    assert!(is_net(&points), "2^{m}, {what:?}");
+                    // One coordinate of each dimension in every interval of length 2⁻ᵐ.
+                    for column in 0..what.width() {
+                        let mut cells: Vec<usize> = block
+                            .iter()
+                            .map(|x| (x[column] * block.len() as f64) as usize)
+                            .collect();
+                        cells.sort_unstable();
+                        assert!(
+                            cells.into_iter().eq(0..block.len()),
+                            "2^{m}, {what:?} {column}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+    // Planted: one point moved by a quarter.
+    let mut points: Vec<[f64; 2]> = pixels_of(Precision::Double, sequence, What::Camera, 1, 64)
+        .iter()
+        .map(|x| [x[0], x[1]])
+        .collect();
+    points[10][0] = (points[10][0] + 0.25) % 1.0;
+    assert!(!is_net(&points));
+}
+
+/// Squared L₂ star discrepancy (T. Warnock 1972).
+fn discrepancy(points: &[[f64; 5]]) -> f64 {
+    let n = points.len() as f64;
+    let singles: f64 = points
+        .iter()
+        .map(|p| p.iter().map(|x| (1.0 - x * x) / 2.0).product::<f64>())
+        .sum();
+    let mut pairs = 0.0;
+    for p in points {
+        for q in points {
+            pairs += p
+                .iter()
+                .zip(q)
+                .map(|(a, b)| 1.0 - a.max(*b))
+                .product::<f64>();
+        }
+    }
+    libm::pow(1.0 / 3.0, 5.0) - 2.0 / n * singles + pairs / (n * n)
+}
+
+#[test]
+fn prefixes_of_odd_length_are_better_than_random() {
+    let mean = |kind| {
+        let sequence = sequence(kind, 17, 1024);
+        let drawn = pixels_of(Precision::Double, sequence, What::Camera, 8, 1024);
+        let each: Vec<f64> = drawn.chunks(1024).map(|p| discrepancy(&p[..700])).collect();
+        moments(&each)
+    };
+    let (sobol, independent) = (mean(SamplerKind::Sobol), mean(SamplerKind::Independent));
+    println!("squared discrepancy at 700: {sobol:?}, independent {independent:?}");
+    // Expected of independent points: (2⁻⁵ − 3⁻⁵)/700 = 3.9e-5.
+    let expected = (libm::pow(0.5, 5.0) - libm::pow(1.0 / 3.0, 5.0)) / 700.0;
+    assert!((independent.0 / expected - 1.0).abs() < 0.5);
+    assert!(sobol.0 < independent.0 / 5.0);
+}
+
+#[test]
+fn different_slots_are_uncorrelated() {
+    let n = 64;
+    let pixels = 3_000;
+    let whats = [
+        What::Camera,
+        What::Pair(Slot::Light, 0),
+        What::Pair(Slot::Bsdf, 0),
+        What::Single(Slot::Choice, 0),
+        What::Pair(Slot::Light, 1),
+        What::Single(Slot::Roulette, 1),
+    ];
+    for kind in KINDS {
+        let drawn =
+            whats.map(|what| pixels_of(Precision::Single, sequence(kind, 29, n), what, pixels, n));
+        for i in 0..whats.len() {
+            for j in 0..i {
+                for column in 0..whats[j].width() {
+                    // The covariance over the points of each pixel.
+                    let products: Vec<f64> = drawn[i]
+                        .chunks(n as usize)
+                        .zip(drawn[j].chunks(n as usize))
+                        .map(|(a, b)| {
+                            let pairs = a.iter().zip(b);
+                            let sum: f64 =
+                                pairs.map(|(a, b)| (a[0] - 0.5) * (b[column] - 0.5)).sum();
+                            sum / f64::from(n)
+                        })
+                        .collect();
+                    let what = format!("{kind:?} {:?} {:?} {column}", whats[i], whats[j]);
+                    assert!(t_test(&products, 0.0) > level(), "{what}");
+                    // As of points paired at random: 1/(144 n) to within the stratification's own
+                    // 1/n, which the sample cannot tell.
+                    let (_, variance) = moments(&products);
+                    let relative = variance * 144.0 * f64::from(n);
+                    assert!((0.8..1.2).contains(&relative), "{what}: {relative}");
+                }
+            }
+        }
+    }
+}
+
+/// Nested scrambles of given words under given seeds.
+struct Scrambles<'a>(&'a [[u32; 2]]);
+
+impl Job for Scrambles<'_> {
+    type Output = Vec<u32>;
+    fn run<L: Lanes>(&self, l: L) -> Vec<u32> {
+        let mut all = Vec::with_capacity(self.0.len());
+        for chunk in self.0.chunks(L::COUNT) {
+            let (mut x, mut seed) = ([0; 16], [0; 16]);
+            for (i, pair) in chunk.iter().enumerate() {
+                (x[i], seed[i]) = (pair[0], pair[1]);
+            }
+            let mut out = [0; 16];
+            l.store_int(
+                nested_scramble(l, l.load_int(&x), l.load_int(&seed)),
+                &mut out,
+            );
+            all.extend(&out[..chunk.len()]);
+        }
+        all
+    }
+}
+
+#[test]
+fn scrambling_is_nested_and_its_flips_are_balanced() {
+    let mut rng = Pcg64Mcg::seed_from_u64(41);
+    let rounds = 20_000;
+    // Flips of bit k, and how often they differ between words that differ in a lower bit.
+    let mut flips = [0u64; 32];
+    let mut differ = [[0u64; 2]; 32];
+    let mut words = Vec::new();
+    for i in 0..rounds {
+        let (x, seed): (u32, u32) = (rng.random(), rng.random());
+        let bit = i % 32;
+        words.extend([[x, seed], [x ^ 1 << bit, seed]]);
+    }
+    let scrambled = best(Precision::Single, &Scrambles(&words));
+    for (i, (pair, out)) in words.chunks(2).zip(scrambled.chunks(2)).enumerate() {
+        let bit = i % 32;
+        let changed = out[0] ^ out[1];
+        // Lower bits stay, the bit itself changes.
+        assert_eq!(changed & ((1u64 << (bit + 1)) - 1) as u32, 1 << bit);
+        let flipped = [pair[0][0] ^ out[0], pair[1][0] ^ out[1]];
+        for (k, count) in flips.iter_mut().enumerate() {
+            *count += u64::from(flipped[0] >> k & 1);
+        }
+        for (k, counts) in differ.iter_mut().enumerate().skip(bit + 1) {
+            counts[usize::from((flipped[0] ^ flipped[1]) >> k & 1 == 1)] += 1;
+        }
+    }
+    for k in 0..32 {
+        let z = (flips[k] as f64 - rounds as f64 / 2.0) / (rounds as f64 / 4.0).sqrt();
+        assert!(
+            normal_p(z) > level(),
+            "flips of bit {k}: {} of {rounds}",
+            flips[k]
+        );
+        let [same, other] = differ[k];
+        let total = (same + other) as f64;
+        // An exact scramble has 1/2; the hash is a cheap one.
+        if k > 0 {
+            let share = other as f64 / total;
+            println!("bit {k}: depends on lower bits in {share:.3}");
+            assert!(
+                (share - 0.5).abs() < 0.06 + 5.0 * (0.25 / total).sqrt(),
+                "bit {k}: {share}"
+            );
+        }
+    }
+}
+
+/// Elements `i` of permutations of `count` under seeds.
+struct Permutes<'a>(u32, &'a [[u32; 2]]);
+
+impl Job for Permutes<'_> {
+    type Output = Vec<u32>;
+    fn run<L: Lanes>(&self, l: L) -> Vec<u32> {
+        let mut all = Vec::with_capacity(self.1.len());
+        for chunk in self.1.chunks(L::COUNT) {
+            let (mut x, mut seed) = ([0; 16], [0; 16]);
+            for (i, pair) in chunk.iter().enumerate() {
+                (x[i], seed[i]) = (pair[0], pair[1]);
+            }
+            let mut out = [0; 16];
+            l.store_int(
+                permute(l, l.load_int(&x), self.0, l.load_int(&seed)),
+                &mut out,
+            );
+            all.extend(&out[..chunk.len()]);
+        }
+        all
+    }
+}
+
+#[test]
+fn permutations_are_bijections_and_even() {
+    let mut rng = Pcg64Mcg::seed_from_u64(43);
+    for count in (1..40).chain([49, 100, 257, 700, 1024, 4095, 4097]) {
+        for _ in 0..10 {
+            let seed = rng.random();
+            let words: Vec<[u32; 2]> = (0..count).map(|i| [i, seed]).collect();
+            let mut image = best(Precision::Single, &Permutes(count, &words));
+            image.sort_unstable();
+            assert!(image.into_iter().eq(0..count), "{count}");
+        }
+    }
+    // Where the first two elements go.
+    for count in [2u32, 3, 4, 5, 7, 8, 9, 16, 25, 49] {
+        let seeds = 40_000;
+        let words: Vec<[u32; 2]> = (0..seeds)
+            .flat_map(|_| {
+                let seed = rng.random();
+                [[0, seed], [1, seed]]
+            })
+            .collect();
+        let image = best(Precision::Single, &Permutes(count, &words));
+        let mut first = vec![0; count as usize];
+        let mut both = vec![0; (count * count) as usize];
+        for pair in image.chunks(2) {
+            first[pair[0] as usize] += 1;
+            both[(pair[0] * count + pair[1]) as usize] += 1;
+        }
+        let each = f64::from(seeds) / f64::from(count);
+        let p = chi_square(&first, &vec![each; count as usize]);
+        assert!(p > level(), "{count}: first element {first:?}, {p:e}");
+        let expected: Vec<f64> = (0..count * count)
+            .map(|k| {
+                let equal = k / count == k % count;
+                if equal {
+                    0.0
+                } else {
+                    each / f64::from(count - 1)
+                }
+            })
+            .collect();
+        let worst = both
+            .iter()
+            .zip(&expected)
+            .map(|(&c, &e)| {
+                if e > 0.0 {
+                    (c as f64 / e - 1.0).abs()
+                } else {
+                    c as f64
+                }
+            })
+            .fold(0.0, f64::max);
+        println!("{count}: pairs off by up to {:.1} %", 100.0 * worst);
+    }
+}
+
+#[test]
+fn many_strata_stay_in_the_square() {
+    // As many strata as f32 can count.
+    for points in [1 << 22, 3000 * 2999, (1 << 24) - 1] {
+        let sequence = sequence(SamplerKind::Stratified, 2, points);
+        for what in [What::Pair(Slot::Light, 0), What::Camera] {
+            let requests: Vec<[u32; 4]> = (0..20_000)
+                .map(|i| [1, 2, 0, i * (points / 20_000)])
+                .collect();
+            let requests = &requests;
+            let [single, double] = PRECISIONS.map(|precision| {
+                best(
+                    precision,
+                    &Ask {
+                        sequence,
+                        requests,
+                        what,
+                    },
+                )
+            });
+            for (a, b) in single.iter().zip(&double) {
+                for (a, b) in a.iter().zip(b) {
+                    assert!(
+                        (0.0..1.0).contains(a) && (a - b).abs() < 1e-6,
+                        "{points}: {a} {b}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn replicates_share_out_all_samples() {
+    let kinds = [1, 2, 3, 8].map(Replicates::Fixed);
+    for replicates in kinds.into_iter().chain([Replicates::Growing]) {
+        let most = 20_000;
+        let mut seen: Vec<u32> = Vec::new();
+        for i in 0..most {
+            let (replicate, index) = replicates.place(i);
+            if replicate as usize >= seen.len() {
+                seen.resize(replicate as usize + 1, 0);
+            }
+            // Each replicate's indices come in order, none left out: a bijection.
+            assert_eq!(seen[replicate as usize], index, "{replicates:?} at {i}");
+            seen[replicate as usize] += 1;
+            let samples = i + 1;
+            let near_a_step = [1, 2, 256, 512, 4096, 8192]
+                .iter()
+                .any(|s| samples.abs_diff(*s) < 20);
+            if near_a_step || samples % 997 == 0 {
+                let reached = seen.iter().filter(|&&n| n > 0).count();
+                assert_eq!(
+                    replicates.count(samples) as usize,
+                    reached,
+                    "{replicates:?} {samples}"
+                );
+                for (r, &own) in seen.iter().enumerate() {
+                    assert_eq!(
+                        replicates.samples_of(r as u32, samples),
+                        own,
+                        "{replicates:?} {r}"
+                    );
+                }
+                assert_eq!(replicates.samples_of(seen.len() as u32 + 7, samples), 0);
+            }
+        }
+    }
+}
+
+#[test]
+fn standard_errors_are_honest() {
+    // 16 samples in each of 8 jittered replicates across an edge.
+    let edge = truth("edge_variance");
+    let p = number(&edge["setup"]["p"]);
+    let row = &list(&edge["exact"]["rows"])[1];
+    let (replicates, spp, pixels) = (Replicates::Fixed(8), 128, 3_000);
+    let sequence = Sequence::new(SamplerKind::Stratified, 3, spp, replicates);
+    let requests: Vec<[u32; 4]> = (0..pixels)
+        .flat_map(|pixel| {
+            (0..spp).map(move |i| {
+                let (replicate, index) = replicates.place(i);
+                [pixel, 0, replicate, index]
+            })
+        })
+        .collect();
+    let drawn = best(
+        Precision::Single,
+        &Ask {
+            sequence,
+            requests: &requests,
+            what: What::Camera,
+        },
+    );
+    let mut film = Pixels::new(pixels as usize, replicates);
+    for (k, numbers) in drawn.iter().enumerate() {
+        let (pixel, i) = (k as u32 / spp, k as u32 % spp);
+        let value = f64::from(u8::from(numbers[0] < p));
+        film.add(pixel as usize, i, [value, 2.0 * value, 1.0]);
+    }
+    let estimates: Vec<_> = (0..pixels as usize)
+        .map(|i| film.estimate(i, spp, |xyz| xyz))
+        .collect();
+    let squares: Vec<f64> = estimates
+        .iter()
+        .map(|e| e.standard_error[0].powi(2))
+        .collect();
+    let variance = number(&row["var_jittered"]) / 8.0;
+    assert!(t_test(&squares, variance) > level());
+    let means: Vec<f64> = estimates.iter().map(|e| e.mean[0]).collect();
+    assert!(variance_p(&means, p, variance).unwrap() > level());
+    for e in &estimates {
+        assert!((e.standard_error[1] - 2.0 * e.standard_error[0]).abs() < 1e-12);
+        assert!(e.standard_error[2] < 1e-12 && (e.mean[2] - 1.0).abs() < 1e-12);
+    }
+    // Planted: what s²/N of the single samples would say is 3.7 times too large.
+    let naive = p * (1.0 - p) / f64::from(spp);
+    assert!(t_test(&squares, naive) < level());
+    // A single replicate has no standard error, and says so.
+    let mut film = Pixels::new(1, Replicates::Fixed(1));
+    film.add(0, 0, [1.0; 3]);
+    assert!(film.estimate(0, 1, |xyz| xyz).standard_error[0].is_nan());
+}
+
+#[test]
+fn stopping_on_the_pilot_is_biased_and_fixed_counts_are_not() {
+    let truth = truth("two_stage_bias");
+    let p = number(&truth["setup"]["p"]);
+    let n = number(&truth["setup"]["N"]);
+    let pixels = 4_000;
+    let drawn = pixels_of(
+        Precision::Single,
+        sequence(SamplerKind::Independent, 6, n as u32),
+        What::Camera,
+        pixels,
+        n as u32,
+    );
+    let fixed = pixel_means(&drawn, n as u32, 0, |x| f64::from(u8::from(x < p)));
+    assert!(t_test(&fixed, p) > level());
+    for row in list(&truth["exact"]["rows"]) {
+        let k = number(&row["k"]);
+        // Σ over pilots with j hits: all equal stop, the others go on to N.
+        let mut expected = 0.0;
+        let mut binomial = 1.0;
+        for j in 0..=k as u32 {
+            let j = f64::from(j);
+            let chance = binomial * libm::pow(p, j) * libm::pow(1.0 - p, k - j);
+            let mean = if j == 0.0 || j == k {
+                j / k
+            } else {
+                (j + (n - k) * p) / n
+            };
+            expected += chance * mean;
+            binomial *= (k - j) / (j + 1.0);
+        }
+        assert!(
+            (expected - number(&row["E_reuse"])).abs() < 1e-12,
+            "{expected}"
+        );
+        let relative = number(&row["relative_bias"]);
+        assert!((expected / p - 1.0 - relative).abs() < 1e-10);
+        // The same happens to real samples.
+        let means: Vec<f64> = drawn
+            .chunks(n as usize)
+            .map(|pixel| {
+                let hits = |m: f64| pixel[..m as usize].iter().filter(|x| x[0] < p).count() as f64;
+                let pilot = hits(k);
+                if pilot == 0.0 || pilot == k {
+                    pilot / k
+                } else {
+                    hits(n) / n
+                }
+            })
+            .collect();
+        assert!(t_test(&means, expected) > level());
+        assert!(t_test(&means, p) < level());
+    }
+}
+
+struct Weights;
+impl Kernel<2, 2> for Weights {
+    #[inline(always)]
+    fn apply<L: Lanes>(&self, l: L, [p, q]: [L::Real; 2]) -> [L::Real; 2] {
+        [power_weight(l, p, q), power_weight(l, q, p)]
+    }
+}
+
+#[test]
+fn weights_of_both_strategies_sum_to_one() {
+    let (mut ps, mut qs) = (Vec::new(), Vec::new());
+    for i in -25..=25 {
+        for j in -25..=25 {
+            ps.push(1.3 * libm::exp10(f64::from(i)));
+            qs.push(0.7 * libm::exp10(f64::from(j)));
+        }
+    }
+    // No density of the other strategy: all the weight.
+    ps.push(0.3);
+    qs.push(0.0);
+    for precision in PRECISIONS {
+        let [a, b] = map(precision, &Weights, &[ps.clone(), qs.clone()]);
+        for (i, (a, b)) in a.iter().zip(&b).enumerate() {
+            assert!(
+                (a + b - 1.0).abs() <= 4.0 * precision.roundoff(),
+                "{} {}",
+                ps[i],
+                qs[i]
+            );
+            let ratio = qs[i] / ps[i];
+            let want = 1.0 / (1.0 + ratio * ratio);
+            assert!((a - want).abs() <= 8.0 * precision.roundoff());
+        }
+        assert_eq!(a[a.len() - 1], 1.0);
+    }
+}
+
+struct Warps;
+impl Kernel<2, 9> for Warps {
+    #[inline(always)]
+    fn apply<L: Lanes>(&self, l: L, [u, v]: [L::Real; 2]) -> [L::Real; 9] {
+        let (x, y) = square_to_disk(l, u, v);
+        let h = cosine_hemisphere(l, u, v);
+        let s = uniform_sphere(l, u, v);
+        let pdf = cosine_hemisphere_pdf(l, h.z);
+        [x, y, h.x, h.y, h.z, s.x, s.y, s.z, pdf]
+    }
+}
+
+/// Counts over 16 × 16 bins of two numbers in [0, 1], against equal shares.
+fn evenness(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let mut counts = vec![0; 256];
+    let mut total = 0.0;
+    for (a, b) in pairs {
+        let cell = |x: f64| ((x * 16.0) as usize).min(15);
+        counts[cell(a) * 16 + cell(b)] += 1;
+        total += 1.0;
+    }
+    chi_square(&counts, &vec![total / 256.0; 256])
+}
+
+fn turn(x: f64, y: f64) -> f64 {
+    libm::atan2(y, x) / TAU + 0.5
+}
+
+/// p-values of disk, hemisphere and sphere in coordinates in which each is uniform.
+fn warps(precision: Precision, seed: u64, bend: impl Fn(f64) -> f64) -> [f64; 3] {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let count = 60_000;
+    let u: Vec<f64> = (0..count).map(|_| bend(rng.random())).collect();
+    let v: Vec<f64> = (0..count).map(|_| rng.random()).collect();
+    let [x, y, hx, hy, hz, sx, sy, sz, pdf] = map(precision, &Warps, &[u, v]);
+    for i in 0..count {
+        let u = precision.roundoff();
+        let hemisphere = hx[i] * hx[i] + hy[i] * hy[i] + hz[i] * hz[i];
+        let sphere = sx[i] * sx[i] + sy[i] * sy[i] + sz[i] * sz[i];
+        assert!((hemisphere - 1.0).abs() < 16.0 * u && (sphere - 1.0).abs() < 16.0 * u);
+        assert!(hz[i] > 0.0 && x[i] * x[i] + y[i] * y[i] <= 1.0 + 8.0 * u);
+        assert!((pdf[i] - hz[i] / PI).abs() <= 2.0 * u);
+    }
+    [
+        // r² is uniform on the disk, as is cos² for the cosine density (∫ cos/π dω = cos²), and z
+        // on the sphere.
+        evenness((0..count).map(|i| (x[i] * x[i] + y[i] * y[i], turn(x[i], y[i])))),
+        evenness((0..count).map(|i| (hz[i] * hz[i], turn(hx[i], hy[i])))),
+        evenness((0..count).map(|i| ((sz[i] + 1.0) / 2.0, turn(sx[i], sy[i])))),
+    ]
+}
+
+#[test]
+fn warps_follow_their_densities() {
+    for precision in PRECISIONS {
+        for (k, p) in warps(precision, 51, |u| u).into_iter().enumerate() {
+            assert!(p > level(), "warp {k}, {precision:?}: {p:e}");
+        }
+    }
+    // The cosine density integrates to 1: Simpson's rule is exact for its primitive's degree.
+    let n = 1_000;
+    let integral: f64 = (0..n)
+        .map(|i| {
+            let cosine = (f64::from(i) + 0.5) / f64::from(n);
+            cosine / PI * TAU / f64::from(n)
+        })
+        .sum();
+    assert!((integral - 1.0).abs() < 1e-12);
+    // Planted: a variate bent by 2.5 %.
+    for (k, p) in warps(Precision::Double, 52, |u| u + 0.1 * u * (1.0 - u))
+        .into_iter()
+        .enumerate()
+    {
+        assert!(p < level(), "warp {k}: {p:e}");
+    }
+}
+
+/// Corners of the unit square, where formulas divide.
+#[test]
+fn warps_are_finite_at_the_corners() {
+    let edge = [0.0, 0.25, 0.5, 0.75, 1.0 - f64::EPSILON, 1e-30];
+    let (mut u, mut v) = (Vec::new(), Vec::new());
+    for a in edge {
+        for b in edge {
+            u.push(a);
+            v.push(b);
+        }
+    }
+    for precision in PRECISIONS {
+        for column in map(precision, &Warps, &[u.clone(), v.clone()]) {
+            assert!(
+                column
+                    .iter()
+                    .all(|x| x.is_finite() && x.abs() <= 1.0 + 1e-6)
+            );
+        }
+    }
+}

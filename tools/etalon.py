@@ -1,0 +1,55 @@
+"""Runs the etalon binary and reads its pictures."""
+
+import resource
+import subprocess
+import time
+from pathlib import Path
+
+import mitsuba as mi
+import numpy as np
+
+import spectra
+
+ROOT = Path(__file__).resolve().parent.parent
+BINARY = ROOT / "target" / "release" / "etalon"
+
+
+class EtalonError(Exception):
+    """The binary is missing or gave up."""
+
+
+def render(scene, output, arguments, **image):
+    """Renders to the file `output` with the command line's `binary`, `threads` and `wavelengths`;
+    `image` are options that stand for keys of [image], such as spp=64 or size=(64, 48). Returns
+    seconds of the whole process, by the clock and of the processors together."""
+    command = [str(arguments.binary), "render", str(scene), "-o", str(output), "--quiet"]
+    command += ["--threads", str(arguments.threads)]
+    for key, value in (image | {"wavelengths": arguments.wavelengths}).items():
+        if value is not None:
+            text = "x".join(map(str, value)) if key == "size" else str(value)
+            command += [f"--{key.replace('_', '-')}", text]
+    before = children_seconds()
+    start = time.perf_counter()
+    try:
+        result = subprocess.run(command, capture_output=True, text=True, check=False)
+    except OSError as error:
+        raise EtalonError(f"{arguments.binary}: {error.strerror}; build it with cargo build --release") from error
+    seconds = np.array([time.perf_counter() - start, children_seconds() - before])
+    if result.returncode != 0:
+        raise EtalonError(f"{' '.join(command)}\n{result.stderr.strip()}")
+    return seconds
+
+
+def children_seconds():
+    """Processor seconds of the processes that have ended, over all their threads."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+def read_xyz(path):
+    """Linear XYZ (height×width×3, float64) of a picture with channels R, G, B."""
+    bitmap = mi.Bitmap(str(path))
+    names = [field.name for field in bitmap.struct_()]
+    values = np.array(bitmap, np.float64)
+    rgb = values[..., [names.index(channel) for channel in "RGB"]]
+    return rgb @ np.linalg.inv(spectra.XYZ_TO_RGB).T
