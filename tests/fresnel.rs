@@ -5,7 +5,7 @@ use etalon::material::fresnel::{conductor, dielectric, dielectric_reflectance};
 use etalon::math::lanes::Lanes;
 
 use crate::lanes_support::{Kernel, PRECISIONS, Precision, map_everywhere};
-use crate::truths::{list, number, truth};
+use crate::truth_file::{list, number, truth};
 
 struct Dielectric;
 impl Kernel<2, 2> for Dielectric {

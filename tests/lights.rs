@@ -17,7 +17,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::{Job, PRECISIONS, Precision, best, on_each, same_bits};
 use crate::statistics_support::{chi_square, sidak, t_test};
-use crate::truths::truth;
+use crate::truth_file::truth;
 
 /// Level of all random tests of this module together.
 const FAMILY: f64 = 1e-4;

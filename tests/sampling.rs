@@ -24,7 +24,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::{Job, Kernel, PRECISIONS, Precision, best, map, on_each};
 use crate::statistics_support::{chi_square, moments, normal_p, sidak, t_test, variance_p};
-use crate::truths::{list, number, truth};
+use crate::truth_file::{list, number, truth};
 
 /// Level of all random tests of this module together.
 const FAMILY: f64 = 2e-4;

@@ -15,5 +15,6 @@ mod shape_ladder;
 mod shape_list;
 mod spectrum;
 mod statistics_support;
+mod truth_file;
 mod truths;
 mod wavelength_grid;

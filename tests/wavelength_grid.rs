@@ -6,7 +6,7 @@ use etalon::integrate::pool::Rows;
 use etalon::math::lanes::Scalar;
 use etalon::spectrum::grid::{CELLS, Cumulative, SpectrumBank};
 
-use crate::truths::{list, number, truth};
+use crate::truth_file::{list, number, truth};
 
 #[test]
 fn the_cumulative_density_is_the_published_one() {

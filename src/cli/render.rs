@@ -96,7 +96,7 @@ fn carry_out(
         time: arguments.time.map(|time| time.0),
         instructions,
     };
-    let mut watch = Watch::new(job, !arguments.quiet);
+    let mut watch = Watch::new(job, request.time, !arguments.quiet);
     let rendered = match &job.bins {
         Some(grid) => render_binned(&job.plan, &request, grid, &mut watch),
         None => render(&job.plan, &request, &mut watch),

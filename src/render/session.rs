@@ -65,7 +65,7 @@ pub struct Share {
 /// stopping between them favours no sample.
 pub fn render(plan: &Plan, request: &Request, progress: &mut dyn Progress) -> Rendered {
     let tiles = request.window.tiles().into_iter();
-    let tiles = tiles.map(|window| Tile::new(window, plan.choices.replicates));
+    let tiles = tiles.map(|window| Tile::new(window, plan.choices.replicates, request.samples));
     run(plan, request, tiles.collect(), progress)
 }
 
@@ -78,7 +78,7 @@ pub fn render_binned(
 ) -> Rendered {
     let tiles = request.window.tiles().into_iter().map(|window| Tile {
         bins: Some(Bins::new(window.pixels(), Arc::clone(grid))),
-        ..Tile::new(window, plan.choices.replicates)
+        ..Tile::new(window, plan.choices.replicates, request.samples)
     });
     run(plan, request, tiles.collect(), progress)
 }

@@ -79,11 +79,11 @@ pub struct Tile {
 }
 
 impl Tile {
-    /// An empty tile.
-    pub fn new(window: Window, replicates: Replicates) -> Self {
+    /// An empty tile for at most `samples` samples a pixel.
+    pub fn new(window: Window, replicates: Replicates, samples: u32) -> Self {
         Self {
             window,
-            pixels: Pixels::new(window.pixels(), replicates),
+            pixels: Pixels::for_samples(window.pixels(), replicates, samples),
             bins: None,
             rungs: Rungs::default(),
             beyond: chunk::Beyond::default(),

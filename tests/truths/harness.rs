@@ -1,0 +1,240 @@
+//! Measuring numbers in pictures, and judging them.
+
+use std::path::Path;
+use std::time::Duration;
+
+use etalon::plan::Plan;
+use etalon::render::instructions;
+use etalon::render::session::{Progress, Rendered, Request, render as run};
+use etalon::render::tile::Window;
+use etalon::scene::{Overrides, parse};
+use rayon::prelude::*;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::scenes::Text;
+
+/// Largest standard error that a number may be judged with, relative to the truth.
+pub const LARGEST_ERROR: f64 = 1e-3;
+/// What the sample count is chosen for.
+const WANTED_ERROR: f64 = 5e-4;
+/// Probability of rejecting any number although all are right.
+const FALSE_ALARM: f64 = 1e-3;
+/// Roundings of single precision, 2⁻²⁴ each, that a number may be off by besides its noise: about
+/// four a segment over a dozen segments, were they all to go the same way.
+const ROUNDING: f64 = 48.0 / 16_777_216.0;
+/// Samples a pixel of the first pilot; a second one takes 16 times as many.
+const PILOT: u32 = 64;
+/// Most samples a pixel.
+const MOST: f64 = 262_144.0;
+
+/// A number to be measured: (mean of a channel + offset) × factor.
+#[derive(Debug, Clone)]
+pub struct Case {
+    pub name: String,
+    pub text: Text,
+    pub truth: f64,
+    window: Option<Window>,
+    channel: usize,
+    offset: f64,
+    factor: f64,
+    /// Known relative error of the set-up, such as the size of the spot that is looked at.
+    systematic: f64,
+}
+
+impl Case {
+    /// The mean luminance of the picture, which is its radiance where nothing depends on the
+    /// wavelength.
+    pub fn new(name: impl Into<String>, text: Text, truth: f64) -> Self {
+        Self {
+            name: name.into(),
+            text,
+            truth,
+            window: None,
+            channel: 1,
+            offset: 0.0,
+            factor: 1.0,
+            systematic: 0.0,
+        }
+    }
+
+    pub fn window(mut self, window: Window) -> Self {
+        self.window = Some(window);
+        self
+    }
+
+    /// Measures X, Y or Z.
+    pub fn channel(mut self, channel: usize) -> Self {
+        self.channel = channel;
+        self
+    }
+
+    /// Measures (mean + offset) × factor.
+    pub fn mapped(mut self, offset: f64, factor: f64) -> Self {
+        (self.offset, self.factor) = (offset, factor);
+        self
+    }
+
+    pub fn systematic(mut self, relative: f64) -> Self {
+        self.systematic = relative;
+        self
+    }
+}
+
+/// An estimate with its standard error.
+#[derive(Debug, Clone, Copy)]
+pub struct Measurement {
+    pub value: f64,
+    pub standard_error: f64,
+    /// Degrees of freedom of the standard error.
+    pub freedom: f64,
+    /// Camera samples.
+    pub samples: u64,
+}
+
+impl Measurement {
+    /// Standard errors between estimate and truth.
+    pub fn score(&self, case: &Case) -> f64 {
+        (self.value - case.truth) / self.standard_error.max(f64::MIN_POSITIVE)
+    }
+
+    /// Two-sided p-value of a truth, less what rounding and set-up explain.
+    fn p_value(&self, truth: f64, case: &Case) -> f64 {
+        let explained = (ROUNDING + case.systematic) * truth.abs();
+        let distance = ((self.value - truth).abs() - explained).max(0.0);
+        if distance == 0.0 {
+            return 1.0;
+        }
+        if self.standard_error == 0.0 {
+            return 0.0;
+        }
+        two_sided(distance / self.standard_error, self.freedom)
+    }
+}
+
+/// P(|T| > t) for Student's t.
+pub fn two_sided(t: f64, freedom: f64) -> f64 {
+    let student = StudentsT::new(0.0, 1.0, freedom).unwrap();
+    2.0 * student.cdf(-t)
+}
+
+struct Silent;
+
+impl Progress for Silent {
+    fn passed(&mut self, _: u32, _: u32, _: Duration, _: Option<f64>) -> bool {
+        true
+    }
+}
+
+/// Renders a scene file; no sample may be anything but a number.
+pub fn render(text: &Text, spp: u32, seed: u64, window: Option<Window>) -> Rendered {
+    let file = text.file(spp, seed);
+    let scene = parse("truth", &file, Path::new(""), &Overrides::default())
+        .unwrap_or_else(|error| panic!("{error}\n{file}"));
+    let plan = Plan::new(&scene, false).unwrap();
+    let [x1, y1] = scene.image.size;
+    let whole = Window {
+        x0: 0,
+        y0: 0,
+        x1,
+        y1,
+    };
+    let request = Request {
+        window: window.unwrap_or(whole),
+        samples: spp,
+        time: None,
+        instructions: instructions(None).unwrap(),
+    };
+    let rendered = run(&plan, &request, &mut Silent);
+    assert_eq!(rendered.not_a_number, 0, "{file}");
+    rendered
+}
+
+/// Mean of a channel over some pixels, with its standard error from their two replicates.
+///
+/// Pixels are scrambled independently, so their squared errors vᵢ add; each has one degree of
+/// freedom, so E vᵢ² = 3 σᵢ⁴, and Welch's and Satterthwaite's (Σ σᵢ²)²/Σ σᵢ⁴ is 3 (Σ vᵢ)²/Σ vᵢ².
+pub fn mean(estimates: &[[f64; 2]]) -> (f64, f64, f64) {
+    let count = estimates.len() as f64;
+    let (mut sum, mut squares, mut fourths) = (0.0, 0.0, 0.0);
+    for [value, error] in estimates {
+        sum += value;
+        squares += error * error;
+        fourths += error.powi(4);
+    }
+    let freedom = if fourths > 0.0 {
+        (3.0 * squares * squares / fourths).clamp(1.0, count)
+    } else {
+        1.0
+    };
+    (sum / count, squares.sqrt() / count, freedom)
+}
+
+fn measure_at(case: &Case, spp: u32, seed: u64) -> Measurement {
+    let rendered = render(&case.text, spp, seed, case.window);
+    let estimates: Vec<[f64; 2]> = rendered
+        .xyz()
+        .iter()
+        .map(|e| [e.mean[case.channel], e.standard_error[case.channel]])
+        .collect();
+    let (value, error, freedom) = mean(&estimates);
+    Measurement {
+        value: (value + case.offset) * case.factor,
+        standard_error: error * case.factor.abs(),
+        freedom,
+        samples: u64::from(spp) * estimates.len() as u64,
+    }
+}
+
+/// Measures with as many samples as pilots that are thrown away ask for, so that the count
+/// favours no outcome.
+pub fn measure(case: &Case) -> Measurement {
+    let mut spp = PILOT;
+    for pilot in 0..2 {
+        let m = measure_at(case, spp, 1 + pilot);
+        let wanted = (WANTED_ERROR * case.truth).abs();
+        let wanted = f64::from(spp) * (m.standard_error / wanted).powi(2);
+        let last = pilot == 1 || wanted <= f64::from(16 * spp);
+        spp = (wanted.clamp(f64::from(PILOT), MOST) as u32).next_power_of_two();
+        if last {
+            break;
+        }
+        spp = 16 * PILOT;
+    }
+    measure_at(case, spp, 3)
+}
+
+/// Measures all, on the threads of the pool.
+pub fn measure_all(cases: Vec<Case>) -> Vec<(Case, Measurement)> {
+    cases
+        .into_par_iter()
+        .map(|case| {
+            let m = measure(&case);
+            (case, m)
+        })
+        .collect()
+}
+
+/// The numbers that Holm's step-down procedure (Holm 1979) rejects.
+pub fn judge<'a>(numbers: impl Iterator<Item = (&'a Measurement, f64, &'a Case)>) -> Vec<String> {
+    let mut all: Vec<(f64, String)> = numbers
+        .map(|(m, truth, case)| {
+            let words = format!(
+                "{}: {} ± {} instead of {truth}",
+                case.name, m.value, m.standard_error
+            );
+            (m.p_value(truth, case), words)
+        })
+        .collect();
+    holm(&mut all)
+}
+
+/// Holm's procedure for (p-value, description).
+pub fn holm(all: &mut [(f64, String)]) -> Vec<String> {
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let count = all.len();
+    all.iter()
+        .enumerate()
+        .take_while(|(i, (p, _))| *p <= FALSE_ALARM / (count - i) as f64)
+        .map(|(_, (p, words))| format!("{words} (p = {p:.1e})"))
+        .collect()
+}

@@ -1,0 +1,123 @@
+//! Radiance that is known on paper, through the whole renderer.
+//!
+//! `tests/data/truths.json` holds families of set-ups with their parameters and exact answers.
+//! Every family is a function of its parameters: it builds the scenes, says which number of the
+//! file each one must give, and works the closed form out once more where that is short. The
+//! environment variable `ETALON_TRUTHS` names another file of the same form.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a failed unwrap is a failed test, and says where"
+)]
+
+mod cameras;
+mod furnaces;
+mod glass;
+mod harness;
+mod lights;
+mod robust;
+mod scenes;
+mod white;
+
+use std::sync::OnceLock;
+
+use serde_json::Value;
+
+use harness::{Case, Measurement, judge, measure_all};
+
+/// The family of that name.
+fn truth(id: &str) -> Value {
+    static ALL: OnceLock<Value> = OnceLock::new();
+    let all = ALL.get_or_init(|| {
+        let text = match std::env::var("ETALON_TRUTHS") {
+            Ok(path) => std::fs::read_to_string(path).unwrap(),
+            Err(_) => include_str!("../data/truths.json").to_owned(),
+        };
+        serde_json::from_str(&text).unwrap()
+    });
+    let families = all["tests"].as_array().unwrap();
+    families.iter().find(|t| t["id"] == id).unwrap().clone()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(number).collect()
+}
+
+/// The file's numbers have at least nine digits.
+#[track_caller]
+fn agree(own: f64, exact: f64) {
+    let error = (own - exact).abs();
+    assert!(
+        error <= 1e-8 * exact.abs().max(1e-3),
+        "the closed form gives {own}, the file says {exact}"
+    );
+}
+
+/// All numbers with what was measured for them, once for all tests.
+fn measured() -> &'static [(Case, Measurement)] {
+    static MEASURED: OnceLock<Vec<(Case, Measurement)>> = OnceLock::new();
+    MEASURED.get_or_init(|| {
+        let cases = [
+            furnaces::cases(),
+            lights::cases(),
+            glass::cases(),
+            cameras::cases(),
+            white::cases(),
+        ];
+        measure_all(cases.into_iter().flatten().collect())
+    })
+}
+
+#[test]
+fn every_truth_is_met() {
+    let measured = measured();
+    println!(
+        "{:<58} {:>14} {:>14} {:>10} {:>7}",
+        "number", "truth", "estimate", "rel. SE", "z"
+    );
+    for (case, m) in measured {
+        println!(
+            "{:<58} {:>14.8} {:>14.8} {:>10.1e} {:>7.2} {:>9}",
+            case.name,
+            case.truth,
+            m.value,
+            m.standard_error / case.truth,
+            m.score(case),
+            m.samples,
+        );
+    }
+    let wide: Vec<&str> = measured
+        .iter()
+        .filter(|(case, m)| m.standard_error > harness::LARGEST_ERROR * case.truth)
+        .map(|(case, _)| case.name.as_str())
+        .collect();
+    assert!(wide.is_empty(), "not measured sharply enough: {wide:?}");
+    let rejected = judge(measured.iter().map(|(case, m)| (m, case.truth, case)));
+    assert!(rejected.is_empty(), "rejected: {rejected:#?}");
+}
+
+/// Half a per cent of bias in any one number is seen, in either direction.
+#[test]
+fn half_a_per_cent_is_not_met() {
+    let measured = measured();
+    for bias in [0.995, 1.005] {
+        let rejected = judge(
+            measured
+                .iter()
+                .map(|(case, m)| (m, case.truth * bias, case)),
+        );
+        let missed: Vec<&str> = measured
+            .iter()
+            .map(|(case, _)| case.name.as_str())
+            .filter(|name| !rejected.iter().any(|r| r.starts_with(name)))
+            .collect();
+        assert!(
+            missed.is_empty(),
+            "a factor of {bias} was not seen: {missed:?}"
+        );
+    }
+}

@@ -1,0 +1,251 @@
+//! Geometry that leaks no light, at any scale and place.
+
+use glam::DVec3;
+
+use super::furnaces::{between, two_bodies};
+use super::glass::{bow_scene, descartes, fresnel_dielectric};
+use super::harness::{Case, holm, judge, mean, measure_all, render, two_sided};
+use super::scenes::Text;
+use super::{number, truth};
+
+/// Every pixel is zero, exactly.
+fn assert_black(name: &str, text: &Text) {
+    let rendered = render(text, 256, 5, None);
+    let lit = rendered.xyz().iter().filter(|e| e.mean[1] != 0.0).count();
+    assert_eq!(lit, 0, "{name}: {lit} pixels see light");
+}
+
+const FACES: [DVec3; 6] = [
+    DVec3::X,
+    DVec3::Y,
+    DVec3::Z,
+    DVec3::NEG_X,
+    DVec3::NEG_Y,
+    DVec3::NEG_Z,
+];
+
+/// A box of one cube, and a box of six squares that share their edges.
+fn boxes(text: &Text, material: &str) -> [(&'static str, Text); 2] {
+    let cube = text.clone().object("cube = {}", material);
+    let squares = FACES.iter().fold(text.clone(), |text, face| {
+        let a = super::scenes::across(*face);
+        text.rectangle(material, a, face.cross(a), *face)
+    });
+    [("cube", cube), ("squares", squares)]
+}
+
+#[test]
+fn a_closed_box_lets_no_light_out() {
+    let from = DVec3::new(3.0, 2.0, 4.0);
+    let text = Text::perspective(from, -from, 40.0)
+        .size([32, 32])
+        .material("wall", "diffuse = 0.9")
+        .material("lamp", "emit = 100")
+        .sphere("lamp", 0.4, DVec3::new(0.3, 0.1, -0.2))
+        .point_light(DVec3::new(-0.5, 0.5, 0.5), 100.0);
+    for (name, text) in boxes(&text, "wall") {
+        assert_black(name, &text);
+    }
+}
+
+#[test]
+fn a_closed_box_lets_no_light_in() {
+    let from = DVec3::new(0.3, -0.2, 0.4);
+    for material in ["black = true", "diffuse = 0.9", "mirror = { ideal = 0.9 }"] {
+        let text = Text::perspective(from, DVec3::new(1.0, 1.0, 0.9), 120.0)
+            .size([32, 32])
+            .material("wall", material)
+            .environment(100.0);
+        for (name, text) in boxes(&text, "wall") {
+            assert_black(&format!("{name} {material}"), &text);
+        }
+    }
+}
+
+#[test]
+fn nothing_arrives_short_of_the_rainbow() {
+    let t = truth("rainbow");
+    for row in t["exact"]["rows"].as_array().unwrap() {
+        let ior = number(&row["n"]);
+        let (i, deviation) = descartes(ior);
+        // The point of exit is not the centre: an angle of 1/10⁴ at the lamp.
+        let lamp = [deviation - 0.05, deviation - 2e-4];
+        let scene = bow_scene(&format!("{{ ior = {ior:?} }}"), i.sin(), lamp);
+        assert_black("rainbow", &scene);
+    }
+}
+
+/// Concentric surfaces apart by 4e-5 of their radius stay two.
+fn shells() -> Vec<Case> {
+    let (near, far) = (1.0, 1.00004);
+    let (rho, le) = ([0.3, 0.6], [1.0, 0.25]);
+    let [inner, outer] = two_bodies(near / far, rho, le);
+    let mut cases: Vec<Case> = [(true, inner), (false, outer)]
+        .into_iter()
+        .map(|(inward, exact)| {
+            let text = between([near, far], rho, le, inward);
+            Case::new(format!("shells inward {inward}"), text, exact)
+        })
+        .collect();
+    let look = Text::orthographic(DVec3::new(0.0, 0.0, 3.0), -DVec3::Z, 0.1);
+    let outside = look
+        .clone()
+        .material("lamp", "emit = 100, sides = \"both\"")
+        .material("skin", "diffuse = 0.5")
+        .sphere("lamp", near, DVec3::ZERO)
+        .sphere("skin", far, DVec3::ZERO)
+        .environment(1.0);
+    cases.push(Case::new("diffuse skin over a lamp", outside, 0.5));
+    // A black core under a skin of glass: only what the skin reflects comes back.
+    let ior = 1.5;
+    let coated = look
+        .material("core", "black = true")
+        .material("skin", &format!("glass = {{ ior = {ior:?} }}"))
+        .sphere("core", near, DVec3::ZERO)
+        .sphere("skin", far, DVec3::ZERO)
+        .environment(1.0);
+    let exact = fresnel_dielectric(1.0, ior);
+    cases.push(Case::new("glass skin over a black core", coated, exact).systematic(1e-5));
+    cases
+}
+
+#[test]
+fn shells_close_together_stay_two() {
+    let measured = measure_all(shells());
+    let rejected = judge(measured.iter().map(|(case, m)| (m, case.truth, case)));
+    assert!(rejected.is_empty(), "{rejected:#?}");
+    let rejected = judge(
+        measured
+            .iter()
+            .map(|(case, m)| (m, 1.005 * case.truth, case)),
+    );
+    assert_eq!(rejected.len(), measured.len(), "{rejected:#?}");
+}
+
+/// A still life, scaled and then moved.
+fn still_life(scale: f64, shift: DVec3, albedo: f64) -> Text {
+    let at = |p: DVec3| p * scale + shift;
+    let (x, y, z) = (scale * DVec3::X, scale * DVec3::Y, scale * DVec3::Z);
+    Text::perspective(
+        at(DVec3::new(0.0, 3.0, 6.0)),
+        DVec3::new(0.0, -0.4, -1.0) * scale,
+        40.0,
+    )
+    .size([16, 16])
+    .material("floor", &format!("diffuse = {albedo:?}"))
+    .material("clear", "glass = \"N-BK7\"")
+    .material("lamp", "emit = 4")
+    .material("silver", "mirror = \"Ag\"")
+    .rectangle("floor", 4.0 * x, -4.0 * z, at(DVec3::ZERO))
+    .rectangle("lamp", x, 0.5 * z, at(DVec3::new(0.0, 5.0, 0.0)))
+    .sphere("clear", 0.7 * scale, at(DVec3::new(1.0, 0.7, 0.0)))
+    .placed(
+        "cube = { side = 1 }",
+        "silver",
+        [x, y, z],
+        at(DVec3::new(-1.0, 0.5, 0.3)),
+    )
+    .environment(0.5)
+}
+
+/// Edge of the blocks of pixels that are compared.
+const BLOCK: usize = 4;
+
+/// Means of blocks of pixels: value, standard error, degrees of freedom.
+fn blocks(text: &Text, seed: u64) -> Vec<(f64, f64, f64)> {
+    let estimates = render(text, 2048, seed, None).xyz();
+    let width = text.size[0] as usize;
+    let across = width / BLOCK;
+    (0..across * across)
+        .map(|block| {
+            let (x, y) = (block % across * BLOCK, block / across * BLOCK);
+            let pixels: Vec<[f64; 2]> = (0..BLOCK * BLOCK)
+                .map(|i| (y + i / BLOCK) * width + x + i % BLOCK)
+                .map(|i| [estimates[i].mean[1], estimates[i].standard_error[1]])
+                .collect();
+            mean(&pixels)
+        })
+        .collect()
+}
+
+/// Blocks that differ, by Welch's test and Holm's procedure.
+fn different(
+    pictures: &[(String, Vec<(f64, f64, f64)>)],
+    first: &[(f64, f64, f64)],
+) -> Vec<String> {
+    let mut all = Vec::new();
+    for (name, picture) in pictures {
+        for (block, (a, b)) in picture.iter().zip(first).enumerate() {
+            let (va, vb) = (a.1 * a.1, b.1 * b.1);
+            let variance = va + vb;
+            let freedom = variance * variance / (va * va / a.2 + vb * vb / b.2);
+            let p = two_sided((a.0 - b.0).abs() / variance.sqrt(), freedom);
+            let words = format!("{name}, block {block}: {} and {}", a.0, b.0);
+            all.push((p, words));
+        }
+    }
+    holm(&mut all)
+}
+
+#[test]
+fn scale_and_place_do_not_show() {
+    let first = blocks(&still_life(1.0, DVec3::ZERO, 0.6), 11);
+    let direction = DVec3::new(0.6, -0.5, 0.7);
+    let mut pictures = Vec::new();
+    for scale in [1e-6, 1e-3, 1e3, 1e6] {
+        for diameters in [0.0, 1e6] {
+            // Twelve units from corner to corner of the floor.
+            let shift = direction * (diameters * 12.0 * scale);
+            let seed = 20 + pictures.len() as u64;
+            let picture = blocks(&still_life(scale, shift, 0.6), seed);
+            pictures.push((format!("scale {scale:e}, moved by {diameters:e}"), picture));
+        }
+    }
+    let rejected = different(&pictures, &first);
+    assert!(rejected.is_empty(), "{rejected:#?}");
+    // Half a per cent of the floor's albedo would have been seen.
+    let darker = blocks(&still_life(1.0, DVec3::ZERO, 0.6 * 0.995), 12);
+    let rejected = different(&[("darker".to_owned(), darker)], &first);
+    assert!(!rejected.is_empty());
+}
+
+/// Rays in the planes of faces, along edges, along axes and through corners; `render` looks for
+/// what is not a number.
+#[test]
+fn rays_in_faces_and_along_edges_are_numbers() {
+    let materials = ["diffuse = 0.8", "glass = { ior = 1.5 }", "mirror = \"Ag\""];
+    for material in materials {
+        let add = |text: Text| {
+            text.material("body", material)
+                .material("lamp", "emit = 2, sides = \"both\"")
+                .object("cube = {}", "body")
+                .placed(
+                    "cylinder = {}",
+                    "body",
+                    [DVec3::X, DVec3::Y, DVec3::Z],
+                    DVec3::new(0.0, 0.0, 4.0),
+                )
+                .sphere("body", 1.0, DVec3::new(0.0, 0.0, -4.0))
+                .rectangle("lamp", DVec3::X, DVec3::Z, DVec3::new(0.0, 1.5, 0.0))
+                .environment(1.0)
+        };
+        // Pixel centres of 5 × 5 on a square of 2.5: −1, −0.5, 0, 0.5, 1, all of them exact.
+        for (from, up) in [
+            (DVec3::new(0.0, 0.0, 8.0), DVec3::Y),
+            (DVec3::new(0.0, 8.0, 0.0), DVec3::Z),
+            (DVec3::new(8.0, 0.0, 1.0), DVec3::Y),
+        ] {
+            let text = Text::upright(from, -from.normalize(), up, 2.5)
+                .size([5, 5])
+                .image("sampler = \"center\"");
+            render(&add(text), 64, 6, None);
+            // From a corner and from the middle of a face, into all directions.
+            for start in [DVec3::ONE, DVec3::X, DVec3::ZERO] {
+                let text = Text::perspective(start, -from, 150.0)
+                    .size([9, 9])
+                    .image("sampler = \"center\"");
+                render(&add(text), 64, 7, None);
+            }
+        }
+    }
+}
