@@ -375,8 +375,8 @@ fn odd_numbers_are_treated_alike() {
             let (a, b) = (precision.rounded(a), precision.rounded(b));
             let expect =
                 |got: f64, want: f64| assert!(got == want || (got.is_nan() && want.is_nan()));
-            expect(min[i], a.min(b));
-            expect(max[i], a.max(b));
+            expect(min[i], if a < b { a } else { b });
+            expect(max[i], if a > b { a } else { b });
             expect(floor[i], a.floor());
             expect(round[i], a.round_ties_even());
         }
