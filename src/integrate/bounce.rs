@@ -32,10 +32,10 @@ struct Step<'a, L: Lanes, const C: usize> {
     rungs: &'a mut Rungs,
     /// The vertex being written down, of lane 0.
     vertex: Option<&'a mut Vertex>,
-    /// Numbers of the rows by lane.
+    /// Where the spectra of each lane are.
     slots: [u32; WIDEST],
-    /// Largest throughput by lane, over the wavelengths.
-    largest: [L::Scalar; WIDEST],
+    /// Which row of every table holds the wavelengths.
+    row: L::Int,
     flags: L::Int,
     depth: L::Int,
     id: Identity<L>,
@@ -74,7 +74,7 @@ pub fn bounce<L: Lanes, const C: usize>(
         rungs,
         vertex: None,
         slots: int_array(l, pool.int(l, IntField::Slot, at)),
-        largest: [L::Scalar::from_f64(1.0); WIDEST],
+        row: pool.int(l, IntField::Row, at),
         flags: pool.int(l, IntField::Flags, at),
         depth: pool.int(l, IntField::Depth, at),
         id: Identity {
@@ -230,30 +230,64 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         if bits == 0 {
             return;
         }
-        let (spectra, weights) = (int_array(l, spectrum), array(l, weight));
+        let (at, weights) = (self.table_rows(l, spectrum), array(l, weight));
+        let table = self.model.spectra.rows::<C>();
+        let Rows {
+            throughput,
+            radiance,
+            ..
+        } = &mut *self.rows;
+        let (throughput, radiance) = (throughput.as_slice(), radiance.as_mut_slice());
         for i in each(bits) {
-            let slot = self.slots[i] as usize;
+            let slot = self.slots[i % WIDEST] as usize;
             // Copies: arrays that cannot overlap become vectors.
-            let values = *self.model.spectra.row::<C>(spectra[i], self.rows.row[slot]);
-            let throughput = self.rows.throughput[slot];
-            let mut radiance = self.rows.radiance[slot];
-            let weight = weights[i];
+            let values = table[at[i % WIDEST] as usize];
+            let carried = throughput[slot];
+            let mut sum = radiance[slot];
+            let weight = weights[i % WIDEST];
             for c in 0..C {
-                radiance[c] = (throughput[c] * weight).fused(values[c], radiance[c]);
+                sum[c] = (carried[c] * weight).fused(values[c], sum[c]);
             }
-            self.rows.radiance[slot] = radiance;
+            radiance[slot] = sum;
         }
+    }
+
+    /// Multiplies the throughput by a spectrum where the mask is true.
+    #[inline(always)]
+    fn multiply_by(&mut self, l: L, m: L::Mask, spectrum: L::Int) {
+        let at = self.table_rows(l, spectrum);
+        let table = self.model.spectra.rows::<C>();
+        let throughput = self.rows.throughput.as_mut_slice();
+        for i in each(m.bits()) {
+            let slot = self.slots[i % WIDEST] as usize;
+            let factors = table[at[i % WIDEST] as usize];
+            let mut carried = throughput[slot];
+            for c in 0..C {
+                carried[c] = carried[c] * factors[c];
+            }
+            throughput[slot] = carried;
+        }
+    }
+
+    /// Numbers of the table rows that hold a spectrum at each lane's wavelengths.
+    #[inline(always)]
+    fn table_rows(&self, l: L, spectrum: L::Int) -> [u32; WIDEST] {
+        int_array(l, spectrum.plus(self.row))
     }
 
     /// Multiplies a lane's throughput by a spectrum of factors.
     #[inline(always)]
     fn multiply(&mut self, i: usize, factors: &[L::Scalar; C]) {
-        let slot = self.slots[i] as usize;
-        let mut throughput = self.rows.throughput[slot];
+        let throughput = &mut self.rows.throughput[self.slots[i] as usize];
         for c in 0..C {
             throughput[c] = throughput[c] * factors[c];
         }
-        self.rows.throughput[slot] = throughput;
+    }
+
+    /// A lane's largest throughput over the wavelengths.
+    #[inline(always)]
+    fn largest(&self, i: usize) -> L::Scalar {
+        let mut throughput = self.rows.throughput[self.slots[i] as usize];
         let mut width = C / 2;
         while width > 0 {
             for c in 0..width {
@@ -261,14 +295,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             }
             width /= 2;
         }
-        self.largest[i] = throughput[0];
-    }
-
-    /// A lane's row of a spectrum.
-    #[inline(always)]
-    fn values(&self, i: usize, spectrum: u32) -> [L::Scalar; C] {
-        let row = self.rows.row[self.slots[i] as usize];
-        *self.model.spectra.row::<C>(spectrum, row)
+        throughput[0]
     }
 
     /// Lets paths at `max_depth` go on in rows of their own, for the cut-off estimate.
@@ -336,11 +363,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         }
         if needs.ideal_mirror {
             let mirror = kind(Scatter::IdealMirror);
-            let spectra = int_array(l, surface.spectrum);
-            for i in each(mirror.bits()) {
-                let reflectance = self.values(i, spectra[i]);
-                self.multiply(i, &reflectance);
-            }
+            self.multiply_by(l, mirror, surface.spectrum);
             next.direction = Vec3::select(l, mirror, mirrored, next.direction);
         }
         if needs.glass {
@@ -369,13 +392,14 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     #[inline(always)]
     fn conductor(&mut self, l: L, surface: &Surfaces<L>, cosine: L::Real, m: L::Mask) {
         let (indices, extinctions) = (
-            int_array(l, surface.spectrum),
-            int_array(l, surface.extinction),
+            self.table_rows(l, surface.spectrum),
+            self.table_rows(l, surface.extinction),
         );
+        let table = self.model.spectra.rows::<C>();
         let cosines = array(l, cosine);
         for i in each(m.bits()) {
-            let n = self.values(i, indices[i]);
-            let k = self.values(i, extinctions[i]);
+            let n = table[indices[i] as usize];
+            let k = table[extinctions[i] as usize];
             let mut reflectance = n;
             for c in 0..C {
                 reflectance[c] = fresnel::conductor(cosines[i], n[c], k[c]);
@@ -395,11 +419,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         next: &mut Scattered<L>,
     ) {
         // bsdf · cos / pdf of the cosine-distributed direction is the albedo at every wavelength.
-        let spectra = int_array(l, surface.spectrum);
-        for i in each(diffuse.bits()) {
-            let albedo = self.values(i, spectra[i]);
-            self.multiply(i, &albedo);
-        }
+        self.multiply_by(l, diffuse, surface.spectrum);
         let normal = Vec3::select(l, surface.front, surface.normal, -surface.normal);
         if !self.model.lights.is_empty() {
             let leaving = Leaving {
@@ -508,7 +528,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let spreads = disperses.bits();
         let front = surface.front.bits();
         let cosines = array(l, cosine);
-        let spectra = int_array(l, surface.spectrum);
+        let at = self.table_rows(l, surface.spectrum);
         let slot = Slot::Choice.at(l, self.depth);
         let variates = array(l, self.model.sequence.single(l, self.id, slot));
         let mut etas = [one; WIDEST];
@@ -517,7 +537,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         for i in each(glass.bits()) {
             let slot = self.slots[i] as usize;
             let hero = self.rows.hero[slot] as usize % C;
-            let eta = self.relative_indices(i, spectra[i], front >> i & 1 == 1);
+            let eta = self.relative_indices(i, at[i], front >> i & 1 == 1);
             etas[i] = eta[hero];
             let mut reflectance = [fresnel::dielectric_reflectance(cosines[i], eta[hero]); C];
             let mut mean = reflectance[hero];
@@ -567,12 +587,11 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
 
     /// n_transmitted/n_incident at a lane's wavelengths, n linear between the grid's nodes.
     #[inline(always)]
-    fn relative_indices(&self, i: usize, spectrum: u32, entering: bool) -> [L::Scalar; C] {
-        let slot = self.slots[i] as usize;
-        let (row, fraction) = (self.rows.row[slot], self.rows.fraction[slot]);
-        let low = self.model.spectra.row::<C>(spectrum, row);
-        let high = self.model.spectra.row::<C>(spectrum, row + 1);
-        let mut eta = *low;
+    fn relative_indices(&self, i: usize, at: u32, entering: bool) -> [L::Scalar; C] {
+        let fraction = self.rows.fraction[self.slots[i] as usize];
+        let table = self.model.spectra.rows::<C>();
+        let (low, high) = (table[at as usize], table[at as usize + 1]);
+        let mut eta = low;
         for c in 0..C {
             let n = fraction.fused(high[c] - low[c], low[c]);
             eta[c] = if entering {
@@ -587,12 +606,15 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     /// Ends paths with the probability that their throughput is lost anyway, and rewards the rest.
     #[inline(always)]
     fn roulette(&mut self, l: L, going: L::Mask) -> L::Mask {
-        let largest = l.load(&self.largest);
-        let going = going & largest.gt(l.real(0.0));
         let late = going & !self.depth.plus(l.int(1)).below(l.int(ROULETTE_FROM));
         if !any(late) {
             return going;
         }
+        let mut largest = [L::Scalar::default(); WIDEST];
+        for i in each(late.bits()) {
+            largest[i] = self.largest(i);
+        }
+        let largest = l.load(&largest);
         let one = l.real(1.0);
         let terminated = has(l, self.flags, flags::TERMINATED);
         let carried = l.select(terminated, l.real(1.0 / C as f64), one);

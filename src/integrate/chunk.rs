@@ -191,9 +191,11 @@ fn start<L: Lanes, const C: usize>(
     let cells = int_array(l, cell);
     let fractions = array(l, position - l.to_real(cell));
     let per_wavelength = (CELLS / C) as u32;
+    let mut row = [0; WIDEST];
     for i in 0..requests.len() {
         let slot = first + i;
-        rows.row[slot] = cells[i] % per_wavelength;
+        row[i] = cells[i] % per_wavelength;
+        rows.row[slot] = row[i];
         rows.hero[slot] = cells[i] / per_wavelength;
         rows.fraction[slot] = fractions[i];
         rows.radiance[slot] = [L::Scalar::default(); C];
@@ -216,5 +218,6 @@ fn start<L: Lanes, const C: usize>(
     pool.set_int(l, IntField::Key, at, id.key);
     pool.set_int(l, IntField::Index, at, id.index);
     pool.set_int(l, IntField::Slot, at, slot);
+    pool.set_int(l, IntField::Row, at, l.load_int(&row));
     pool.length += requests.len();
 }

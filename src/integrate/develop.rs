@@ -42,7 +42,7 @@ impl<T: Scalar> Spectrometer<T> {
         let row = rows.row[slot];
         let mut out = [T::default(); 3];
         for (out, first) in out.iter_mut().zip(self.observer) {
-            let weights = *self.bank.row::<C>(first, row);
+            let weights = self.bank.rows::<C>()[(first + row) as usize];
             // Pairwise, so that the sum is the same tree whatever the vector width.
             let mut terms = [T::default(); C];
             for c in 0..C {

@@ -39,12 +39,14 @@ pub enum IntField {
     Key = 3,
     /// Index within the replicate.
     Index = 4,
-    /// Number of its rows.
+    /// Where its spectra are among [`Rows`].
     Slot = 5,
+    /// Which row of every table holds its wavelengths.
+    Row = 6,
 }
 
 /// Number of integers.
-const INTS: usize = 6;
+const INTS: usize = 7;
 
 /// What is known of a path besides numbers.
 pub mod flags {

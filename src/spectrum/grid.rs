@@ -100,15 +100,10 @@ impl<T: Scalar> SpectrumBank<T> {
         self.values.len() * size_of::<T>()
     }
 
-    /// The values at a path's wavelengths: row `row` of the spectrum that starts at `first`.
+    /// The table: row `first + r` holds the values at the wavelengths of a path of row r of the
+    /// spectrum that starts at `first`.
     #[inline(always)]
-    pub fn row<const C: usize>(&self, first: u32, row: u32) -> &[T; C] {
-        let at = (first as usize + row as usize) * C;
-        // Both numbers come from the plan, and the plan filled the bank; the fallback is for the
-        // type checker.
-        match self.values.get(at..at + C).and_then(|v| v.first_chunk()) {
-            Some(values) => values,
-            None => unreachable!("a spectrum outside of the bank"),
-        }
+    pub fn rows<const C: usize>(&self) -> &[[T; C]] {
+        self.values.as_chunks().0
     }
 }
