@@ -2,6 +2,7 @@
 
 mod cli;
 mod cli_render;
+mod closed_forms;
 mod film_files;
 mod lane_functions;
 mod lane_shapes;
