@@ -48,18 +48,19 @@ fn closed() -> Vec<Case> {
     let (rho, le) = (number(&t["setup"]["rho"]), number(&t["setup"]["Le"]));
     let whole = number(&t["exact"]["L"]);
     agree(le / (1.0 - rho), whole);
-    let scene = |shape: &str| {
+    let scene = |shape: &str, sides: &str| {
         let from = DVec3::new(0.3, 0.2, -0.1);
         Text::perspective(from, DVec3::new(0.2, 0.5, 0.8), 90.0)
             .material(
                 "wall",
-                &format!("diffuse = {rho:?}, emit = {le:?}, sides = \"back\""),
+                &format!("diffuse = {rho:?}, emit = {le:?}, sides = \"{sides}\""),
             )
             .object(shape, "wall")
     };
-    let mut cases = Vec::new();
+    let both = scene("sphere = {}", "both");
+    let mut cases = vec![Case::new("furnace_closed sphere both", both, whole)];
     for shape in ["sphere", "cube", "cylinder"] {
-        let scene = scene(&format!("{shape} = {{}}"));
+        let scene = scene(&format!("{shape} = {{}}"), "back");
         cases.push(Case::new(
             format!("furnace_closed {shape}"),
             scene.clone(),

@@ -36,7 +36,7 @@ fn boxes(text: &Text, material: &str) -> [(&'static str, Text); 2] {
 
 #[test]
 fn a_closed_box_lets_no_light_out() {
-    let from = DVec3::new(3.0, 2.0, 4.0);
+    let from = DVec3::new(3.0, 2.0, -4.0);
     let text = Text::perspective(from, -from, 40.0)
         .size([32, 32])
         .material("wall", "diffuse = 0.9")
@@ -46,6 +46,13 @@ fn a_closed_box_lets_no_light_out() {
     for (name, text) in boxes(&text, "wall") {
         assert_black(name, &text);
     }
+    // Without a lid it does.
+    let open = FACES[..5].iter().fold(text, |text, face| {
+        let a = super::scenes::across(*face);
+        text.rectangle("wall", a, face.cross(a), *face)
+    });
+    let rendered = render(&open, 256, 5, None);
+    assert!(rendered.xyz().iter().any(|e| e.mean[1] != 0.0));
 }
 
 #[test]
