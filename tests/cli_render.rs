@@ -335,7 +335,10 @@ fn a_flat_environment_is_1_in_every_bin() {
                 "{} {mean} ± {error}",
                 bin.name
             );
-            assert!(error < 0.01, "{} ± {error}", bin.name);
+            // A bin is C intervals of the hero's variate, each with two edges in strata of K
+            // replicates, and so at most 2 C K/4 variance of the count; at 825 nm 2.4e-4 nm⁻¹ of
+            // the density makes 0.6 C counts of 256: 1.7/√C a pixel, and 256 pixels.
+            assert!(error < 0.06, "{} ± {error}", bin.name);
         }
         assert_eq!(count, 47);
     }
@@ -379,7 +382,7 @@ fn what_cannot_be_done_is_refused_before_it_is_begun() {
     assert!(refused(&["--crop", "0,0,22,17"]).contains("not inside the picture of 21x17"));
     std::fs::create_dir(studio.path().join("seen.png")).unwrap();
     assert!(refused(&["-o", "seen.exr"]).contains("seen.png: it is a directory"));
-    let memory = ["--size", "16384x16384", "--replicates", "65536"];
+    let memory = ["--size", "16384x16384", "--layers", "spectral:400-800:0.1"];
     assert!(refused(&memory).contains("MiB of memory"));
     let plain = SCENE.split("[[panel]]").next().unwrap();
     let message = Studio::new(plain).refused(&["--panel", "all"]);
@@ -421,16 +424,17 @@ mod interrupts {
             .stdout(Stdio::piped())
             .spawn()
             .unwrap();
-        let status = format!("/proc/{}/status", child.id());
-        loop {
-            let text = std::fs::read_to_string(&status).unwrap();
-            let caught = text.lines().find_map(|line| line.strip_prefix("SigCgt:"));
-            // Bit 1 is signal 2, SIGINT.
-            if u64::from_str_radix(caught.unwrap().trim(), 16).unwrap() & 2 != 0 {
-                return child;
-            }
+        while !listens(child.id()) {
             std::thread::sleep(Duration::from_millis(1));
         }
+        child
+    }
+
+    /// Whether a process has a handler of SIGINT, signal 2 and so bit 1.
+    fn listens(id: u32) -> bool {
+        let text = std::fs::read_to_string(format!("/proc/{id}/status")).unwrap();
+        let caught = text.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+        u64::from_str_radix(caught.unwrap().trim(), 16).unwrap() & 2 != 0
     }
 
     fn interrupt(child: &Child) {

@@ -9,7 +9,7 @@
 use std::f64::consts::PI;
 
 use etalon::light::{CubeLight, LightShape, PlanarLight, RectangleLight, SphereLight};
-use etalon::math::lanes::{Lanes, Mask, Real, Scalar};
+use etalon::math::lanes::{Lanes, Mask, Scalar};
 use etalon::math::vec3::Vec3;
 use glam::DVec3;
 use rand::{RngExt, SeedableRng};
@@ -17,7 +17,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::{Job, PRECISIONS, Precision, best, on_each, same_bits};
 use crate::statistics_support::{chi_square, sidak, t_test};
-use crate::truths::truth;
+use crate::truth_file::truth;
 
 /// Level of all random tests of this module together.
 const FAMILY: f64 = 1e-4;
@@ -551,17 +551,16 @@ fn verdict(
     }
 }
 
-/// Receivers for which the density is smooth enough for midpoint quadrature (not within a
-/// hundredth of a size of the light's plane, where 1/cos³ spans decades).
+/// Receivers for which the density is smooth enough for midpoint quadrature: not within a tenth
+/// of a size of the light's plane, where 1/cos³ spans decades.
 fn tame() -> Vec<(Light, DVec3)> {
     settings()
         .into_iter()
         .flat_map(|(light, receivers)| {
             receivers.into_iter().enumerate().filter_map(move |(i, p)| {
-                let flat = matches!(light, Light::Parallelogram { .. } | Light::Disk { .. });
-                let rough = flat && (3..=4).contains(&i)
-                    || matches!(light, Light::Rectangle { .. }) && i == 4
-                    || matches!(light, Light::Cube { .. }) && i == 4;
+                let flat = !matches!(light, Light::Sphere { .. } | Light::Cube { .. });
+                let rough =
+                    flat && (2..=4).contains(&i) || matches!(light, Light::Cube { .. }) && i == 4;
                 (!rough).then_some((light, p))
             })
         })
@@ -588,11 +587,55 @@ fn directions_follow_their_densities_which_integrate_to_one() {
 fn a_bent_map_is_noticed() {
     let mut rng = Pcg64Mcg::seed_from_u64(24);
     for (light, receivers) in settings() {
-        // 5 % more density at one edge than at the other.
-        let bend = |[u, v]: [f64; 2]| [u, v + 0.05 * v * (1.0 - v)];
+        // A density tilted by ±10 % from one edge to the other.
+        let bend = |[u, v]: [f64; 2]| [u, v + 0.1 * v * (1.0 - v)];
         let verdict = verdict(light, receivers[0], &mut rng, Precision::Double, bend);
         println!("{light:?}: bent p = {:e}", verdict.p_value);
         assert!(verdict.p_value < 1e-5, "{light:?}");
+    }
+}
+
+#[test]
+fn grazing_receivers_see_all_of_a_flat_light_alike() {
+    let mut rng = Pcg64Mcg::seed_from_u64(27);
+    // By area, the points themselves are uniform, however grazing the view.
+    let level = sidak(FAMILY / 10.0, 40);
+    for precision in PRECISIONS {
+        for (light, receivers) in settings() {
+            let (centre, half) = match light {
+                Light::Parallelogram { centre, half } | Light::Disk { centre, half } => {
+                    (centre, half)
+                }
+                _ => continue,
+            };
+            let normal = half[0].cross(half[1]);
+            for p in receivers {
+                let variates = independent(&mut rng, 20_000);
+                let drawn = best(
+                    precision,
+                    &Draw {
+                        light,
+                        p,
+                        variates: &variates,
+                    },
+                );
+                let mut counts = vec![0; 144];
+                for sample in &drawn {
+                    let at = p + sample.distance * sample.direction - centre;
+                    let x = at.cross(half[1]).dot(normal) / normal.length_squared();
+                    let y = half[0].cross(at).dot(normal) / normal.length_squared();
+                    let (a, b) = if matches!(light, Light::Disk { .. }) {
+                        (x * x + y * y, libm::atan2(y, x) / (2.0 * PI) + 0.5)
+                    } else {
+                        ((x + 1.0) / 2.0, (y + 1.0) / 2.0)
+                    };
+                    let cell = |x: f64| ((x * 12.0) as usize).min(11);
+                    counts[cell(a) * 12 + cell(b)] += 1;
+                }
+                let p_value = chi_square(&counts, &[20_000.0 / 144.0; 144]);
+                assert!(p_value > level, "{light:?} {p}: {p_value:e}");
+            }
+        }
     }
 }
 
@@ -616,8 +659,8 @@ fn solid_angle(p: DVec3, centre: DVec3, half: [DVec3; 2]) -> f64 {
 #[test]
 fn a_rectangle_knows_its_solid_angle() {
     let mut rng = Pcg64Mcg::seed_from_u64(25);
-    // What SEEN's threshold in rectangle.rs promises: the loss of digits of the excess of angles.
-    for (precision, allowed) in [(Precision::Single, 3e-5), (Precision::Double, 1e-12)] {
+    // What the threshold in rectangle.rs promises: four angles to a quarter unit of 1 each.
+    for (precision, allowed) in [(Precision::Single, 7.5e-5), (Precision::Double, 2e-13)] {
         let mut worst = 0.0_f64;
         let mut near = 0;
         for _ in 0..4_000 {
@@ -760,7 +803,7 @@ fn closed_forms() -> Vec<(String, Light, (DVec3, DVec3), f64)> {
 #[test]
 fn irradiances_match_the_closed_forms() {
     let cases = closed_forms();
-    let level = sidak(FAMILY / 2.0, 2 * cases.len());
+    let level = sidak(0.4 * FAMILY, 2 * cases.len());
     for precision in PRECISIONS {
         for (k, (name, light, at, irradiance)) in cases.iter().enumerate() {
             let estimates = irradiances(*light, *at, precision, 100 + k as u64);
@@ -778,7 +821,7 @@ fn irradiances_match_the_closed_forms() {
                 p > level || rounding,
                 "{name}: p = {p:e}, {mean} for {irradiance}"
             );
-            // Planted: a density that is half a per cent too large.
+            // Planted: a density that is a per cent too large.
             let wrong: Vec<f64> = estimates.iter().map(|e| e / 1.01).collect();
             assert!(
                 t_test(&wrong, *irradiance) < level,

@@ -9,7 +9,7 @@
 use std::f64::consts::{PI, TAU};
 
 use etalon::film::pixels::Pixels;
-use etalon::math::lanes::{Int, Lanes, Scalar};
+use etalon::math::lanes::{Lanes, Scalar};
 use etalon::sample::Slot;
 use etalon::sample::mis::power_weight;
 use etalon::sample::permute::permute;
@@ -24,7 +24,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::{Job, Kernel, PRECISIONS, Precision, best, map, on_each};
 use crate::statistics_support::{chi_square, moments, normal_p, sidak, t_test, variance_p};
-use crate::truths::{list, number, truth};
+use crate::truth_file::{list, number, truth};
 
 /// Level of all random tests of this module together.
 const FAMILY: f64 = 2e-4;
@@ -251,7 +251,7 @@ fn pixel_means(drawn: &[[f64; 5]], n: u32, column: usize, f: impl Fn(f64) -> f64
 }
 
 /// Truth for the kind of point set: independent, jittered or stratified in one dimension.
-fn promised<'a>(kind: SamplerKind, names: [&'a str; 3]) -> &'a str {
+fn promised(kind: SamplerKind, names: [&str; 3]) -> &str {
     match kind {
         SamplerKind::Independent => names[0],
         SamplerKind::Stratified => names[1],
@@ -451,11 +451,13 @@ fn different_slots_are_uncorrelated() {
                         .collect();
                     let what = format!("{kind:?} {:?} {:?} {column}", whats[i], whats[j]);
                     assert!(t_test(&products, 0.0) > level(), "{what}");
-                    // As of points paired at random: 1/(144 n) to within the stratification's own
-                    // 1/n, which the sample cannot tell.
+                    // As of points paired at random, 1/(144 n); a nested shuffle of the index
+                    // flips the samples 2i and 2i + 1 together, so that the halves of both numbers
+                    // are paired by n/2 coins only: up to twice as much.
                     let (_, variance) = moments(&products);
                     let relative = variance * 144.0 * f64::from(n);
-                    assert!((0.8..1.2).contains(&relative), "{what}: {relative}");
+                    let most = if kind == SamplerKind::Sobol { 2.2 } else { 1.2 };
+                    assert!((0.8..most).contains(&relative), "{what}: {relative}");
                 }
             }
         }
@@ -608,6 +610,8 @@ fn permutations_are_bijections_and_even() {
                 }
             })
             .fold(0.0, f64::max);
+        let p = chi_square(&both, &expected);
+        assert!(p > level(), "{count}: pairs {p:e}");
         println!("{count}: pairs off by up to {:.1} %", 100.0 * worst);
     }
 }

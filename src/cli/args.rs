@@ -64,6 +64,12 @@ impl SceneArguments {
 /// Arguments of `etalon render`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
+Beside the picture goes a PNG to look at, its exposure chosen for the eye. --time and Ctrl-C stop \
+between passes; the file then holds the count of samples reached, and --spp with that count gives \
+the same bits (not so with the sampler stratified, whose strata are cut for a planned count). A \
+second Ctrl-C ends at once and leaves no file. A picture that needs more memory than the system \
+has available is refused.
+
 Examples:
   etalon render scenes/spheres.toml
   etalon render scenes/spheres.toml -o small.exr --size 200x150 --spp 64

@@ -89,7 +89,7 @@ pub enum CommandError {
     /// The result could not be written.
     #[error("error: cannot write the output: {0}")]
     Output(io::Error),
-    /// Not part of this build.
-    #[error("error: {0} is not available yet")]
-    NotAvailable(&'static str),
+    /// An argument that does not fit the scene.
+    #[error("error: {0}")]
+    Arguments(String),
 }

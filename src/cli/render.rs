@@ -11,8 +11,8 @@ use std::io::Write as _;
 use std::path::Path;
 
 use etalon::film::{exr, png, whole};
-use etalon::render::tile::Instructions;
-use etalon::render::{Request, pass, render, render_binned};
+use etalon::render::Instructions;
+use etalon::render::{Request, dispatch, render, render_binned};
 use etalon::scene;
 use rayon::ThreadPool;
 
@@ -77,7 +77,7 @@ fn threads(arguments: &Render) -> Result<ThreadPool, CommandError> {
 /// The instruction set asked for, if this machine has it.
 fn instructions(asked: values::Instructions) -> Result<Instructions, CommandError> {
     let name = asked.name();
-    pass::instructions(name).ok_or(CommandError::Instructions(name.unwrap_or("known")))
+    dispatch::instructions(name).ok_or(CommandError::Instructions(name.unwrap_or("known")))
 }
 
 /// Renders and writes one picture, on the threads of the current pool; the answer is the report.
@@ -96,7 +96,7 @@ fn carry_out(
         time: arguments.time.map(|time| time.0),
         instructions,
     };
-    let mut watch = Watch::new(job, !arguments.quiet);
+    let mut watch = Watch::new(job, request.time, !arguments.quiet);
     let rendered = match &job.bins {
         Some(grid) => render_binned(&job.plan, &request, grid, &mut watch),
         None => render(&job.plan, &request, &mut watch),

@@ -1,6 +1,13 @@
 //! `etalon replay`: one camera path, step by step.
 
-use etalon::scene;
+use std::io::Write;
+
+use etalon::integrate::chunk::Request;
+use etalon::integrate::replay::{LightVertex, Replayed, Vertex};
+use etalon::plan::Plan;
+use etalon::render::{instructions, replay};
+use etalon::scene::{self, Scene};
+use glam::DVec3;
 
 use super::Answer;
 use super::args::Replay;
@@ -8,6 +15,128 @@ use super::error::CommandError;
 
 /// Follows the path asked for.
 pub fn run(arguments: &Replay) -> Result<Answer, CommandError> {
-    scene::load(&arguments.scene.scene, &arguments.overrides())?;
-    Err(CommandError::NotAvailable("replay"))
+    let scene = scene::load(&arguments.scene.scene, &arguments.overrides())?;
+    let [x, y] = arguments.pixel.0;
+    let [width, height] = scene.image.size;
+    if x >= width || y >= height {
+        return Err(CommandError::Arguments(format!(
+            "pixel {x},{y} is outside of the {width}x{height} picture"
+        )));
+    }
+    if arguments.sample >= scene.image.spp {
+        return Err(CommandError::Arguments(format!(
+            "sample {} is not below the scene's {} samples a pixel: say --set image.spp=N as the \
+             render did",
+            arguments.sample, scene.image.spp
+        )));
+    }
+    let plan = Plan::new(&scene, false)?;
+    let level = instructions(None).ok_or(CommandError::Instructions("known"))?;
+    let request = Request {
+        x,
+        y,
+        sample: arguments.sample,
+    };
+    let path = replay(&plan, level, request);
+    let text = describe(&scene, request, &path);
+    std::io::stdout()
+        .write_all(text.as_bytes())
+        .map_err(CommandError::Output)?;
+    Ok(Answer::Good)
+}
+
+fn describe(scene: &Scene, request: Request, path: &Replayed) -> String {
+    let mut lines = vec![
+        format!(
+            "pixel {},{} sample {} seed {}",
+            request.x, request.y, request.sample, scene.image.seed
+        ),
+        format!("wavelengths (nm)  {}", numbers(&path.wavelengths)),
+        format!("hero              {:?} nm", path.wavelengths[path.hero]),
+    ];
+    for (i, vertex) in path.vertices.iter().enumerate() {
+        lines.push(String::new());
+        lines.push(format!("vertex {}", i + 1));
+        lines.extend(
+            rows(scene, vertex)
+                .into_iter()
+                .map(|(name, value)| format!("  {name:<18}{value}")),
+        );
+    }
+    lines.push(String::new());
+    lines.push(format!("X Y Z             {}", numbers(&path.tristimulus)));
+    lines.join("\n") + "\n"
+}
+
+fn rows(scene: &Scene, vertex: &Vertex) -> Vec<(&'static str, String)> {
+    let world = |p: DVec3| point(p + scene.camera.from);
+    let mut rows = vec![
+        ("from", world(vertex.origin)),
+        ("direction", point(vertex.direction)),
+        ("pdf (1/sr)", density(vertex.arrival_pdf)),
+        ("throughput", numbers(&vertex.throughput)),
+    ];
+    match vertex.object {
+        Some(index) => {
+            let object = &scene.objects[index as usize];
+            let side = if vertex.front { "front" } else { "back" };
+            rows.extend([
+                ("object", format!("{} ({side})", object.name)),
+                (
+                    "material",
+                    scene.materials[object.value.material].name.clone(),
+                ),
+                ("distance", format!("{:?}", vertex.distance)),
+                ("point", world(vertex.point)),
+                ("normal", point(vertex.normal)),
+            ]);
+        }
+        None => rows.push(("object", "none: the ray leaves the scene".to_owned())),
+    }
+    if let Some(weight) = vertex.emission_weight {
+        rows.push(("emits, mis weight", format!("{weight:?}")));
+    }
+    if let Some(light) = &vertex.light {
+        rows.push(("light", describe_light(scene, light)));
+    }
+    rows.push(("radiance so far", numbers(&vertex.radiance)));
+    match &vertex.scattered {
+        Some(next) => rows.extend([
+            ("goes on", point(next.direction)),
+            ("pdf (1/sr)", density(next.pdf)),
+            ("throughput", numbers(&next.throughput)),
+        ]),
+        None => rows.push(("ends", "here".to_owned())),
+    }
+    rows
+}
+
+fn describe_light(scene: &Scene, light: &LightVertex) -> String {
+    let name = match light.object {
+        Some(index) => scene.objects[index as usize].name.as_str(),
+        None => "without a surface",
+    };
+    let seen = if light.blocked { "hidden" } else { "seen" };
+    format!(
+        "{name} {seen}, direction {}, distance {:?}, cos/π · mis weight / pdf {:?}",
+        point(light.direction),
+        light.distance,
+        light.weight
+    )
+}
+
+fn density(pdf: Option<f64>) -> String {
+    pdf.map_or_else(
+        || "none: the only direction".to_owned(),
+        |p| format!("{p:?}"),
+    )
+}
+
+fn point(p: DVec3) -> String {
+    numbers(&p.to_array())
+}
+
+fn numbers(values: &[f64]) -> String {
+    let texts: Vec<String> = values.iter().map(|v| format!("{v:?}")).collect();
+    texts.join(" ")
 }

@@ -7,9 +7,6 @@
 use crate::sample::sequence::Replicates;
 use crate::spectrum::observer::XYZ_TO_LINEAR_SRGB;
 
-/// Most replicates that a pixel can have with growing replicates.
-const GROWN: u32 = 8;
-
 /// Sums of X, Y, Z by pixel and replicate.
 #[derive(Debug, Clone)]
 pub struct Pixels {
@@ -32,19 +29,15 @@ pub fn to_rgb(xyz: [f64; 3]) -> [f64; 3] {
     XYZ_TO_LINEAR_SRGB.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])
 }
 
-/// Replicates that a pixel has room for.
-fn slots(replicates: Replicates) -> usize {
-    let slots = match replicates {
-        Replicates::Fixed(count) => count,
-        Replicates::Growing => GROWN,
-    };
-    slots as usize
-}
-
 impl Pixels {
-    /// Zero sums for this many pixels.
+    /// Zero sums for this many pixels, with room for any number of samples.
     pub fn new(pixels: usize, replicates: Replicates) -> Self {
-        let slots = slots(replicates);
+        Self::for_samples(pixels, replicates, u32::MAX)
+    }
+
+    /// Zero sums for this many pixels of at most `samples` samples each.
+    pub fn for_samples(pixels: usize, replicates: Replicates, samples: u32) -> Self {
+        let slots = replicates.count(samples) as usize;
         Self {
             replicates,
             slots,
@@ -52,9 +45,9 @@ impl Pixels {
         }
     }
 
-    /// Bytes of a pixel's sums.
-    pub fn bytes_per_pixel(replicates: Replicates) -> usize {
-        slots(replicates) * size_of::<[f64; 3]>()
+    /// Bytes of the sums of a pixel of at most `samples` samples.
+    pub fn bytes_per_pixel(replicates: Replicates, samples: u32) -> usize {
+        replicates.count(samples) as usize * size_of::<[f64; 3]>()
     }
 
     /// Adds sample `sample` of a pixel; a pixel's samples must come in order.

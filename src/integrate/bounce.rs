@@ -1,11 +1,12 @@
 //! One segment of every path: find the surface, take its light, sample the lights, scatter.
 
 use super::chunk::CHUNK;
-use super::intersect::{Leaving, NOTHING, Rungs, Shadow, nearest, occluded};
+use super::intersect::{Leaving, NOTHING, Nearest, Rungs, Shadow, lane_vector, nearest, occluded};
 use super::model::{Model, Scatter};
 use super::pool::{
     IntField, Pool, RealField, Rows, WIDEST, any, array, bit_where, each, flags, has, int_array,
 };
+use super::replay::{LightVertex, ScatteredVertex, Vertex};
 use super::surface::{Arrival, Surfaces, surfaces};
 use crate::material::fresnel;
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
@@ -29,6 +30,8 @@ struct Step<'a, L: Lanes, const C: usize> {
     model: &'a Model<L::Scalar>,
     rows: &'a mut Rows<L::Scalar, C>,
     rungs: &'a mut Rungs,
+    /// The vertex being written down, of lane 0.
+    vertex: Option<&'a mut Vertex>,
     /// Numbers of the rows by lane.
     slots: [u32; WIDEST],
     /// Largest throughput by lane, over the wavelengths.
@@ -58,6 +61,7 @@ pub fn bounce<L: Lanes, const C: usize>(
     at: usize,
     active: u32,
     rungs: &mut Rungs,
+    trace: &mut Option<Vec<Vertex>>,
 ) -> u32 {
     let active = l.mask_from_bits(active);
     let ray = LaneRay::<L>::new(
@@ -68,6 +72,7 @@ pub fn bounce<L: Lanes, const C: usize>(
         model,
         rows,
         rungs,
+        vertex: None,
         slots: int_array(l, pool.int(l, IntField::Slot, at)),
         largest: [L::Scalar::from_f64(1.0); WIDEST],
         flags: pool.int(l, IntField::Flags, at),
@@ -92,6 +97,10 @@ pub fn bounce<L: Lanes, const C: usize>(
         specular: has(l, step.flags, flags::SPECULAR),
     };
     let surface = surfaces(l, model, &ray, &found, &arrival, hit);
+    let mut vertex = trace
+        .is_some()
+        .then(|| step.vertex(l, &ray, &found, &surface, &arrival));
+    step.vertex = vertex.as_mut();
     if model.needs.emission {
         step.add(l, surface.emits, surface.emission, surface.emission_weight);
     }
@@ -111,6 +120,7 @@ pub fn bounce<L: Lanes, const C: usize>(
 
     let next = step.scatter(l, &ray, &surface, found.object, going);
     let alive = step.roulette(l, going);
+    step.note_end(l, &next, alive);
 
     let kept = step.flags & l.int(flags::TERMINATED | flags::BEYOND);
     let flags = kept
@@ -125,6 +135,9 @@ pub fn bounce<L: Lanes, const C: usize>(
     pool.set_int(l, IntField::Flags, at, flags);
     pool.set_int(l, IntField::Depth, at, depth);
     pool.set_int(l, IntField::Slot, at, slots);
+    if let (Some(trace), Some(vertex)) = (trace, vertex) {
+        trace.push(vertex);
+    }
     alive.bits()
 }
 
@@ -150,7 +163,66 @@ fn set_vector<L: Lanes>(
     pool.set_real(l, field, 2, at, v.z);
 }
 
+/// An object's index unless it is [`NOTHING`].
+fn some_object(index: u32) -> Option<u32> {
+    (index != NOTHING).then_some(index)
+}
+
 impl<L: Lanes, const C: usize> Step<'_, L, C> {
+    /// Lane 0 on arrival.
+    #[cold]
+    fn vertex(
+        &self,
+        l: L,
+        ray: &LaneRay<L>,
+        found: &Nearest<L>,
+        surface: &Surfaces<L>,
+        arrival: &Arrival<L>,
+    ) -> Vertex {
+        let set = |m: L::Mask| m.bits() & 1 == 1;
+        Vertex {
+            depth: l.int_lane(self.depth, 0),
+            origin: lane_vector(l, ray.origin, 0),
+            direction: lane_vector(l, ray.direction, 0),
+            distance: l.lane(found.t, 0).to_f64(),
+            object: some_object(l.int_lane(found.object, 0)),
+            point: lane_vector(l, surface.point, 0),
+            normal: lane_vector(l, surface.normal, 0),
+            front: set(surface.front),
+            arrival_pdf: (!set(arrival.specular)).then(|| l.lane(arrival.pdf, 0).to_f64()),
+            emission_weight: set(surface.emits)
+                .then(|| l.lane(surface.emission_weight, 0).to_f64()),
+            throughput: self.spectrum(&self.rows.throughput),
+            light: None,
+            scattered: None,
+            radiance: Vec::new(),
+        }
+    }
+
+    /// Lane 0's row of a table of rows.
+    fn spectrum(&self, rows: &[[L::Scalar; C]]) -> Vec<f64> {
+        rows[self.slots[0] as usize].map(Scalar::to_f64).to_vec()
+    }
+
+    /// Writes down how lane 0 goes on.
+    #[inline(always)]
+    fn note_end(&mut self, l: L, next: &Scattered<L>, alive: L::Mask) {
+        if self.vertex.is_some() {
+            let goes_on = alive.bits() & 1 == 1;
+            let specular = next.specular.bits() & 1 == 1;
+            let scattered = goes_on.then(|| ScatteredVertex {
+                direction: lane_vector(l, next.direction, 0),
+                pdf: (!specular).then(|| l.lane(next.pdf, 0).to_f64()),
+                throughput: self.spectrum(&self.rows.throughput),
+            });
+            let radiance = self.spectrum(&self.rows.radiance);
+            if let Some(vertex) = &mut self.vertex {
+                vertex.scattered = scattered;
+                vertex.radiance = radiance;
+            }
+        }
+    }
+
     /// Adds throughput × weight × spectrum to the radiance where the mask is true.
     #[inline(always)]
     fn add(&mut self, l: L, m: L::Mask, spectrum: L::Int, weight: L::Real) {
@@ -406,6 +478,17 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             except,
         };
         let blocked = occluded(l, model, &shadow, leaving, asked, self.rungs);
+        if let Some(vertex) = &mut self.vertex
+            && asked.bits() & 1 == 1
+        {
+            vertex.light = Some(LightVertex {
+                object: some_object(l.int_lane(except, 0)),
+                direction: lane_vector(l, direction, 0),
+                distance: l.lane(distance, 0).to_f64(),
+                weight: l.lane(weight, 0).to_f64(),
+                blocked: blocked.bits() & 1 == 1,
+            });
+        }
         self.add(l, asked & !blocked, spectrum, weight);
     }
 

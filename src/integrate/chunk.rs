@@ -5,6 +5,7 @@ use super::develop::Spectrometer;
 use super::intersect::{NOTHING, Rungs};
 use super::model::Model;
 use super::pool::{IntField, Pool, RealField, Rows, WIDEST, array, flags, int_array};
+use super::replay::Vertex;
 use crate::math::lanes::{Lanes, Scalar};
 use crate::spectrum::grid::CELLS;
 
@@ -48,6 +49,8 @@ pub struct Workspace<T, const C: usize> {
     pub rungs: Rungs,
     /// What `max_depth` cut off.
     pub beyond: Beyond,
+    /// The vertices of a single request, to be written down.
+    pub trace: Option<Vec<Vertex>>,
 }
 
 impl<T: Scalar, const C: usize> Workspace<T, C> {
@@ -60,6 +63,7 @@ impl<T: Scalar, const C: usize> Workspace<T, C> {
             tristimulus: Vec::new(),
             rungs: Rungs::default(),
             beyond: Beyond::default(),
+            trace: None,
         }
     }
 }
@@ -71,9 +75,24 @@ impl<T: Scalar, const C: usize> Default for Workspace<T, C> {
 }
 
 /// Renders up to [`CHUNK`] requested samples; their tristimulus values are then in
-/// `workspace.tristimulus`, by request.
-#[inline(always)]
+/// `workspace.tristimulus`, by request. A single request is written down vertex by vertex where
+/// `workspace.trace` asks for it.
+#[inline(never)]
 pub fn render<L: Lanes, const C: usize>(
+    l: L,
+    model: &Model<L::Scalar>,
+    spectrometer: &Spectrometer<L::Scalar>,
+    requests: &[Request],
+    workspace: &mut Workspace<L::Scalar, C>,
+) {
+    l.vectorize(
+        #[inline(always)]
+        || render_inlined(l, model, spectrometer, requests, workspace),
+    );
+}
+
+#[inline(always)]
+fn render_inlined<L: Lanes, const C: usize>(
     l: L,
     model: &Model<L::Scalar>,
     spectrometer: &Spectrometer<L::Scalar>,
@@ -87,6 +106,7 @@ pub fn render<L: Lanes, const C: usize>(
         tristimulus,
         rungs,
         beyond,
+        trace,
     } = workspace;
     pool.length = 0;
     pool.alive = 0;
@@ -115,7 +135,8 @@ pub fn render<L: Lanes, const C: usize>(
             if active == 0 {
                 continue;
             }
-            let survivors = bounce(l, model, pool, rows, beyond_slots, at, active, rungs) & active;
+            let survivors =
+                bounce(l, model, pool, rows, beyond_slots, at, active, rungs, trace) & active;
             pool.masks[packet] = survivors;
             alive += survivors.count_ones() as usize;
         }

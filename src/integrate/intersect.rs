@@ -2,10 +2,12 @@
 
 use glam::DVec3;
 
-use super::model::Model;
-use super::pool::any;
+use super::model::{Many, Model};
+use super::pool::{WIDEST, array, each};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
+use crate::math::vec3::Vec3;
 use crate::shape::Tally;
+use crate::shape::hierarchy::{BoxRay, Descent};
 use crate::shape::lanes::implicit::StartSign;
 use crate::shape::lanes::{LaneRay, Span};
 use crate::shape::resolve::Departure;
@@ -110,7 +112,7 @@ fn candidate<L: Lanes>(
 
 /// One lane of a vector as f64.
 #[inline(always)]
-fn lane_vector<L: Lanes>(l: L, v: crate::math::vec3::Vec3<L::Real>, i: usize) -> DVec3 {
+pub fn lane_vector<L: Lanes>(l: L, v: Vec3<L::Real>, i: usize) -> DVec3 {
     DVec3::new(
         l.lane(v.x, i).to_f64(),
         l.lane(v.y, i).to_f64(),
@@ -124,6 +126,154 @@ fn departure<L: Lanes>(l: L, leaving: &Leaving<L>, i: usize) -> Departure {
         object: l.int_lane(leaving.object, i),
         inward: leaving.inward.bits() >> i & 1 == 1,
     }
+}
+
+/// The closest hits found so far, and where the earliest crossing could be that no bound could
+/// settle.
+struct Search<L: Lanes> {
+    best: Nearest<L>,
+    error: L::Real,
+    doubt: L::Real,
+}
+
+impl<L: Lanes> Search<L> {
+    /// Asks one object, for the lanes in `asked`.
+    #[inline(always)]
+    fn ask(
+        &mut self,
+        l: L,
+        model: &Model<L::Scalar>,
+        k: u32,
+        ray: &LaneRay<L>,
+        leaving: &Leaving<L>,
+        asked: L::Mask,
+    ) {
+        let shape = &model.shapes[k as usize];
+        let Some(kind) = shape.kind else { return };
+        let index = l.int(k);
+        let span = shape.span(l, ray);
+        let own = leaving.object.same(index);
+        let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
+        let closer = (c.t + c.error).lt(self.best.t - self.error);
+        let farther = (c.t - c.error).gt(self.best.t + self.error);
+        let take = c.hit & closer & asked;
+        let unsettled = (c.undecided | (c.hit & !closer & !farther)) & asked;
+        self.best.t = l.select(take, c.t, self.best.t);
+        self.error = l.select(take, c.error, self.error);
+        self.best.object = l.select_int(take, index, self.best.object);
+        self.doubt = l.select(unsettled, self.doubt.min(c.earliest), self.doubt);
+    }
+
+    /// The same as one copy of code, for the hierarchy.
+    #[inline(never)]
+    fn ask_alone(
+        &mut self,
+        l: L,
+        model: &Model<L::Scalar>,
+        k: u32,
+        ray: &LaneRay<L>,
+        leaving: &Leaving<L>,
+        asked: L::Mask,
+    ) {
+        l.vectorize(
+            #[inline(always)]
+            || self.ask(l, model, k, ray, leaving, asked),
+        );
+    }
+
+    /// Asks the objects whose boxes the rays meet, nearest boxes first, a round of one object a
+    /// ray at a time.
+    #[inline(always)]
+    fn ask_many(
+        &mut self,
+        l: L,
+        model: &Model<L::Scalar>,
+        many: &Many<L::Scalar>,
+        ray: &LaneRay<L>,
+        leaving: &Leaving<L>,
+        active: L::Mask,
+    ) {
+        for &k in &many.unbounded {
+            self.ask_alone(l, model, k, ray, leaving, active);
+        }
+        let mut rays = Rounds::new(l, ray, active);
+        loop {
+            let limits = array(l, self.best.t + self.error);
+            let (mut pending, objects) = rays.next(many, active.bits(), &limits);
+            if pending == 0 {
+                return;
+            }
+            let objects = l.load_int(&objects);
+            while pending != 0 {
+                let k = l.int_lane(objects, pending.trailing_zeros() as usize);
+                let here = l.mask_from_bits(pending) & objects.same(l.int(k));
+                pending &= !here.bits();
+                self.ask_alone(l, model, k, ray, leaving, here);
+            }
+        }
+    }
+}
+
+/// The ways of a packet's rays through the hierarchy.
+struct Rounds<T> {
+    rays: [BoxRay<T>; WIDEST],
+    descents: [Descent<T>; WIDEST],
+}
+
+impl<T: Scalar> Rounds<T> {
+    #[inline(always)]
+    fn new<L: Lanes<Scalar = T>>(l: L, ray: &LaneRay<L>, active: L::Mask) -> Self {
+        let (o, d) = (ray.origin, ray.direction);
+        let origins = [array(l, o.x), array(l, o.y), array(l, o.z)];
+        let directions = [array(l, d.x), array(l, d.y), array(l, d.z)];
+        let bits = active.bits();
+        Self {
+            rays: std::array::from_fn(|i| {
+                BoxRay::new(
+                    [origins[0][i], origins[1][i], origins[2][i]],
+                    [directions[0][i], directions[1][i], directions[2][i]],
+                )
+            }),
+            descents: std::array::from_fn(|i| Descent::new(bits >> i & 1 == 1)),
+        }
+    }
+
+    /// The next object of each of the rays in `bits` before its limit, and which rays have one.
+    #[inline(always)]
+    fn next(&mut self, many: &Many<T>, bits: u32, limits: &[T; WIDEST]) -> (u32, [u32; WIDEST]) {
+        let mut found = 0;
+        let mut objects = [NOTHING; WIDEST];
+        for i in each(bits) {
+            let next = many
+                .boxes
+                .next(&mut self.descents[i], &self.rays[i], limits[i]);
+            if let Some(object) = next {
+                found |= 1 << i;
+                objects[i] = object;
+            }
+        }
+        (found, objects)
+    }
+}
+
+/// The objects that one lane's ray could meet before `limit`; `None` for all.
+#[cold]
+fn candidates<L: Lanes>(
+    l: L,
+    model: &Model<L::Scalar>,
+    ray: &LaneRay<L>,
+    i: usize,
+    limit: L::Scalar,
+) -> Option<Vec<u32>> {
+    let many = model.hierarchy.as_ref()?;
+    let vector = |v: Vec3<L::Real>| [l.lane(v.x, i), l.lane(v.y, i), l.lane(v.z, i)];
+    let ray = BoxRay::new(vector(ray.origin), vector(ray.direction));
+    let mut descent = Descent::new(true);
+    let mut objects = many.unbounded.clone();
+    while let Some(object) = many.boxes.next(&mut descent, &ray, limit) {
+        objects.push(object);
+    }
+    Some(objects)
 }
 
 /// The closest hits of the active rays.
@@ -140,54 +290,49 @@ pub fn nearest<L: Lanes>(
         #[inline(always)]
         || {
             let infinite = l.real(f64::INFINITY);
-            let mut best = Nearest::<L> {
-                t: infinite,
-                object: l.int(NOTHING),
+            let mut search = Search::<L> {
+                best: Nearest {
+                    t: infinite,
+                    object: l.int(NOTHING),
+                },
+                error: l.real(0.0),
+                doubt: infinite,
             };
-            let mut best_error = l.real(0.0);
-            // Where the earliest crossing could be that no bound could settle.
-            let mut doubt = infinite;
-            for (k, shape) in model.shapes.iter().enumerate() {
-                let Some(kind) = shape.kind else { continue };
-                let index = l.int(k as u32);
-                let span = shape.span(l, ray);
-                let own = leaving.object.same(index);
-                let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
-                let closer = (c.t + c.error).lt(best.t - best_error);
-                let farther = (c.t - c.error).gt(best.t + best_error);
-                let take = c.hit & closer;
-                let tie = c.hit & !closer & !farther;
-                best.t = l.select(take, c.t, best.t);
-                best_error = l.select(take, c.error, best_error);
-                best.object = l.select_int(take, index, best.object);
-                doubt = l.select(c.undecided | tie, doubt.min(c.earliest), doubt);
-            }
-            rungs.rays += u64::from(active.bits().count_ones());
-            let unsure = active & doubt.le(best.t + best_error) & !doubt.same(infinite);
-            if any(unsure) {
-                let mut bits = unsure.bits();
-                rungs.undecided += u64::from(bits.count_ones());
-                while bits != 0 {
-                    let i = bits.trailing_zeros() as usize;
-                    bits &= bits - 1;
-                    let (t, object) = model
-                        .resolver
-                        .nearest(
-                            lane_vector(l, ray.origin, i),
-                            lane_vector(l, ray.direction, i),
-                            departure(l, leaving, i),
-                            &mut rungs.ladder,
-                        )
-                        .unwrap_or((f64::INFINITY, NOTHING));
-                    best.t = l.with_lane(best.t, i, L::Scalar::from_f64(t));
-                    best.object = l.with_int_lane(best.object, i, object);
+            match &model.hierarchy {
+                None => {
+                    for k in 0..model.shapes.len() as u32 {
+                        search.ask(l, model, k, ray, leaving, active);
+                    }
                 }
+                Some(many) => search.ask_many(l, model, many, ray, leaving, active),
+            }
+            let Search {
+                mut best,
+                error,
+                doubt,
+            } = search;
+            rungs.rays += u64::from(active.bits().count_ones());
+            let unsure = active & doubt.le(best.t + error) & !doubt.same(infinite);
+            rungs.undecided += u64::from(unsure.bits().count_ones());
+            for i in each(unsure.bits()) {
+                let candidates = candidates(l, model, ray, i, l.lane(best.t + error, i));
+                let (t, object) = model
+                    .resolver
+                    .nearest(
+                        candidates.as_deref(),
+                        lane_vector(l, ray.origin, i),
+                        lane_vector(l, ray.direction, i),
+                        departure(l, leaving, i),
+                        &mut rungs.ladder,
+                    )
+                    .unwrap_or((f64::INFINITY, NOTHING));
+                best.t = l.with_lane(best.t, i, L::Scalar::from_f64(t));
+                best.object = l.with_int_lane(best.object, i, object);
             }
             for (object, implicit) in &model.implicits {
                 let index = l.int(*object);
-                let on = leaving.object.same(index);
                 let start = StartSign {
-                    on,
+                    on: leaving.object.same(index),
                     inward: leaving.inward,
                 };
                 let (t, found) = implicit.first_change(l, ray, start, best.t, active);
@@ -210,6 +355,85 @@ pub struct Shadow<L: Lanes> {
     pub except: L::Int,
 }
 
+/// Which shadow rays are surely blocked, and which may be.
+struct Blocks<L: Lanes> {
+    blocked: L::Mask,
+    doubtful: L::Mask,
+}
+
+impl<L: Lanes> Blocks<L> {
+    /// Asks one object, for the lanes in `asked`.
+    #[inline(always)]
+    fn ask(
+        &mut self,
+        l: L,
+        model: &Model<L::Scalar>,
+        k: u32,
+        shadow: &Shadow<L>,
+        leaving: &Leaving<L>,
+        asked: L::Mask,
+    ) {
+        let shape = &model.shapes[k as usize];
+        let Some(kind) = shape.kind else { return };
+        let index = l.int(k);
+        let span = shape.span(l, &shadow.ray);
+        let own = leaving.object.same(index);
+        let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
+        let counted = asked & !shadow.except.same(index);
+        self.blocked = self.blocked | (c.hit & (c.t + c.error).lt(shadow.limit) & counted);
+        self.doubtful = self.doubtful | (c.undecided & c.earliest.lt(shadow.limit) & counted);
+    }
+
+    /// The same as one copy of code, for the hierarchy.
+    #[inline(never)]
+    fn ask_alone(
+        &mut self,
+        l: L,
+        model: &Model<L::Scalar>,
+        k: u32,
+        shadow: &Shadow<L>,
+        leaving: &Leaving<L>,
+        asked: L::Mask,
+    ) {
+        l.vectorize(
+            #[inline(always)]
+            || self.ask(l, model, k, shadow, leaving, asked),
+        );
+    }
+
+    /// Asks the objects whose boxes the rays meet, until each ray is blocked or through.
+    #[inline(always)]
+    fn ask_many(
+        &mut self,
+        l: L,
+        model: &Model<L::Scalar>,
+        many: &Many<L::Scalar>,
+        shadow: &Shadow<L>,
+        leaving: &Leaving<L>,
+        active: L::Mask,
+    ) {
+        for &k in &many.unbounded {
+            self.ask_alone(l, model, k, shadow, leaving, active);
+        }
+        let mut rays = Rounds::new(l, &shadow.ray, active);
+        let limits = array(l, shadow.limit);
+        loop {
+            let open = active & !self.blocked;
+            let (mut pending, objects) = rays.next(many, open.bits(), &limits);
+            if pending == 0 {
+                return;
+            }
+            let objects = l.load_int(&objects);
+            while pending != 0 {
+                let k = l.int_lane(objects, pending.trailing_zeros() as usize);
+                let here = l.mask_from_bits(pending) & objects.same(l.int(k));
+                pending &= !here.bits();
+                self.ask_alone(l, model, k, shadow, leaving, here);
+            }
+        }
+    }
+}
+
 /// Which of the active rays meet anything before their limit.
 ///
 /// The far end is a point on another surface, rounded; what is not *certainly* before it is taken
@@ -226,51 +450,52 @@ pub fn occluded<L: Lanes>(
     l.vectorize(
         #[inline(always)]
         || {
-            let Shadow { ray, limit, except } = *shadow;
-            let ray = &ray;
-            let mut blocked = l.mask(false);
-            let mut doubtful = l.mask(false);
-            for (k, shape) in model.shapes.iter().enumerate() {
-                let Some(kind) = shape.kind else { continue };
-                let index = l.int(k as u32);
-                let span = shape.span(l, ray);
-                let own = leaving.object.same(index);
-                let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
-                let counted = !except.same(index);
-                blocked = blocked | (c.hit & (c.t + c.error).lt(limit) & counted);
-                doubtful = doubtful | (c.undecided & c.earliest.lt(limit) & counted);
+            let nobody = l.mask(false);
+            let mut blocks = Blocks::<L> {
+                blocked: nobody,
+                doubtful: nobody,
+            };
+            match &model.hierarchy {
+                None => {
+                    for k in 0..model.shapes.len() as u32 {
+                        blocks.ask(l, model, k, shadow, leaving, active);
+                    }
+                }
+                Some(many) => blocks.ask_many(l, model, many, shadow, leaving, active),
             }
+            let Blocks {
+                mut blocked,
+                doubtful,
+            } = blocks;
             rungs.rays += u64::from(active.bits().count_ones());
             let unsure = active & doubtful & !blocked;
-            if any(unsure) {
-                let mut bits = unsure.bits();
-                rungs.undecided += u64::from(bits.count_ones());
-                let mut answers = 0;
-                while bits != 0 {
-                    let i = bits.trailing_zeros() as usize;
-                    bits &= bits - 1;
-                    // The limit is a rounded distance: a few units in its last place are its own noise.
-                    let end = l.lane(limit, i).to_f64() * (1.0 - 8.0 * L::Scalar::ROUNDOFF);
-                    let hidden = model.resolver.occluded(
-                        lane_vector(l, ray.origin, i),
-                        lane_vector(l, ray.direction, i),
-                        end,
-                        departure(l, leaving, i),
-                        l.int_lane(except, i),
-                        &mut rungs.ladder,
-                    );
-                    answers |= u32::from(hidden) << i;
-                }
-                blocked = blocked | l.mask_from_bits(answers);
+            rungs.undecided += u64::from(unsure.bits().count_ones());
+            let mut answers = 0;
+            for i in each(unsure.bits()) {
+                // The limit is a rounded distance: a few units in its last place are its own noise.
+                let end = l.lane(shadow.limit, i).to_f64() * (1.0 - 8.0 * L::Scalar::ROUNDOFF);
+                let limit = l.lane(shadow.limit, i);
+                let candidates = candidates(l, model, &shadow.ray, i, limit);
+                let hidden = model.resolver.occluded(
+                    candidates.as_deref(),
+                    lane_vector(l, shadow.ray.origin, i),
+                    lane_vector(l, shadow.ray.direction, i),
+                    end,
+                    departure(l, leaving, i),
+                    l.int_lane(shadow.except, i),
+                    &mut rungs.ladder,
+                );
+                answers |= u32::from(hidden) << i;
             }
+            blocked = blocked | l.mask_from_bits(answers);
             for (object, implicit) in &model.implicits {
                 let index = l.int(*object);
                 let start = StartSign {
                     on: leaving.object.same(index),
                     inward: leaving.inward,
                 };
-                let wanted = active & !blocked & !except.same(index);
-                let (_, found) = implicit.first_change(l, ray, start, limit, wanted);
+                let wanted = active & !blocked & !shadow.except.same(index);
+                let (_, found) = implicit.first_change(l, &shadow.ray, start, shadow.limit, wanted);
                 blocked = blocked | (found & wanted);
             }
             blocked

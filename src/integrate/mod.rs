@@ -11,4 +11,5 @@ pub mod develop;
 pub mod intersect;
 pub mod model;
 pub mod pool;
+pub mod replay;
 pub mod surface;

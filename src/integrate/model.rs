@@ -4,6 +4,7 @@ use crate::camera::LaneCamera;
 use crate::light::LaneLight;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Sequence;
+use crate::shape::hierarchy::Hierarchy;
 use crate::shape::lanes::LaneShape;
 use crate::shape::lanes::implicit::LaneImplicit;
 use crate::shape::resolve::Resolver;
@@ -80,6 +81,15 @@ pub struct Needs {
     pub checker: bool,
 }
 
+/// Many objects: a hierarchy of those with bounds, and the rest.
+#[derive(Debug, Clone)]
+pub struct Many<T> {
+    /// Boxes over the objects with bounds.
+    pub boxes: Hierarchy<T>,
+    /// Infinite planes.
+    pub unbounded: Vec<u32>,
+}
+
 /// Everything the loop reads.
 #[derive(Debug)]
 pub struct Model<T: Scalar> {
@@ -91,6 +101,8 @@ pub struct Model<T: Scalar> {
     pub max_depth: u32,
     /// What can happen.
     pub needs: Needs,
+    /// Boxes over the shapes, where there are many; `None` is a list.
+    pub hierarchy: Option<Many<T>>,
     /// Placed shapes by object.
     pub shapes: Vec<LaneShape<T>>,
     /// Implicit surfaces: (object, surface).

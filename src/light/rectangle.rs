@@ -90,7 +90,8 @@ impl<T: Scalar> RectangleLight<T> {
             let g3 = corner(x[0], y[0], -1.0);
             seen.corners = g2 + g3;
             seen.turns = (g0 + g1) - (l.real(1.0) - seen.corners);
-            // Below 0.01 sr the difference has lost too much: 4 angles of 2⁻²⁵ turns, 2e-5.
+            // Below 0.01 sr the difference has lost too much: 4 angles to 2⁻²⁵ turns each are
+            // within 7.5e-5 of it.
             let least: L::Real = l.real(0.01 / std::f64::consts::TAU);
             seen.near = near & least.lt(seen.turns);
         }

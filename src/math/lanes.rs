@@ -117,9 +117,9 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Absolute value.
     fn abs(self) -> Self;
-    /// The smaller; the other operand where one is NaN; zero is positive.
+    /// `self < other ? self : other`: the smaller; `other` where they are equal or one is NaN.
     fn min(self, other: Self) -> Self;
-    /// The larger; the other operand where one is NaN; zero is positive.
+    /// `self > other ? self : other`: the larger; `other` where they are equal or one is NaN.
     fn max(self, other: Self) -> Self;
     /// Largest integer not above.
     fn floor(self) -> Self;
@@ -274,6 +274,13 @@ fn fuses(level: Level) -> bool {
     return !level.is_fallback();
 }
 
+/// Whether the instruction set's own minimum and maximum are `a < b ? a : b` and `a > b ? a : b`,
+/// as `minps` and its kin are on x86.
+#[inline(always)]
+fn compares_once() -> bool {
+    cfg!(target_arch = "x86_64")
+}
+
 /// The fused multiply-add in software: one copy, for it is long.
 #[inline(never)]
 fn fused_by_call_single<S: Simd>(x: f32x16<S>, a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
@@ -308,13 +315,19 @@ macro_rules! real_impl {
             }
             #[inline(always)]
             fn min(self, other: Self) -> Self {
-                // Which of two unlike zeros comes out depends on the instruction set: + 0 makes
-                // either positive and changes nothing else.
-                self.min_precise(other) + 0.0
+                if compares_once() {
+                    SimdBase::min(self, other)
+                } else {
+                    self.simd_lt(other).select(self, other)
+                }
             }
             #[inline(always)]
             fn max(self, other: Self) -> Self {
-                self.max_precise(other) + 0.0
+                if compares_once() {
+                    SimdBase::max(self, other)
+                } else {
+                    self.simd_gt(other).select(self, other)
+                }
             }
             #[inline(always)]
             fn floor(self) -> Self {

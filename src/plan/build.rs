@@ -7,12 +7,13 @@ use super::choose::Choices;
 use super::extent::{about_camera, columns, is_similarity, perpendicular, translation};
 use crate::camera::LaneCamera;
 use crate::integrate::develop::Spectrometer;
-use crate::integrate::model::{Checker, Model, ObjectShading, Scatter};
+use crate::integrate::model::{Checker, Many, Model, ObjectShading, Scatter};
 use crate::light::{CubeLight, LaneLight, LightShape, PlanarLight, RectangleLight, SphereLight};
 use crate::math::affine::Affine;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Sequence;
 use crate::scene::{Emission, Light, Object, Scene, Shape, Sides, Surface};
+use crate::shape::hierarchy::{Bounds, Hierarchy};
 use crate::shape::lanes::LaneShape;
 use crate::shape::lanes::implicit::LaneImplicit;
 use crate::shape::resolve::Resolver;
@@ -22,6 +23,9 @@ use crate::spectrum::cells;
 use crate::spectrum::grid::{CELLS, Cumulative, SpectrumBank};
 use crate::spectrum::ior::RefractiveIndex;
 use crate::spectrum::observer::spectrum_to_xyz;
+
+/// Most objects that are tested one after the other; beyond, boxes are sorted into a hierarchy.
+pub const LARGEST_LIST: usize = 24;
 
 /// Builds model and spectrometer.
 ///
@@ -48,7 +52,12 @@ pub fn build<T: Scalar>(
         .as_ref()
         .map(|spectrum| builder.spectrum(spectrum));
     let lights = builder.pick();
+    let many = builder.bounded.len() > LARGEST_LIST;
     let model = Model {
+        hierarchy: many.then(|| Many {
+            boxes: Hierarchy::new(&builder.bounded),
+            unbounded: builder.unbounded,
+        }),
         camera: LaneCamera::new(&scene.camera, scene.image.size),
         sequence: Sequence::new(
             scene.image.sampler,
@@ -86,6 +95,8 @@ struct Builder<T> {
     shading: Vec<ObjectShading<T>>,
     lights: Vec<(LaneLight<T>, f64)>,
     resolver: Resolver,
+    bounded: Vec<(u32, Bounds)>,
+    unbounded: Vec<u32>,
     reach: f64,
 }
 
@@ -102,6 +113,8 @@ impl<T: Scalar> Builder<T> {
             shading: Vec::new(),
             lights: Vec::new(),
             resolver: Resolver::default(),
+            bounded: Vec::new(),
+            unbounded: Vec::new(),
             reach: 0.0,
         }
     }
@@ -161,7 +174,12 @@ impl<T: Scalar> Builder<T> {
             }
         }
         if let Some(bounds) = super::extent::bounds(&object.shape, &to_world) {
-            self.reach = self.reach.max(bounds.reach());
+            self.reach = self.reach.max(super::extent::reach(&bounds));
+            if kind.is_some() {
+                self.bounded.push((index as u32, bounds));
+            }
+        } else {
+            self.unbounded.push(index as u32);
         }
         Some(Placement { to_world, inverse })
     }

@@ -339,7 +339,8 @@ fn depth(scene: &Scene) -> String {
 
 fn memory(scene: &Scene, plan: &Plan) -> String {
     let [width, height] = scene.image.size.map(u64::from);
-    let sums = width * height * Pixels::bytes_per_pixel(plan.choices.replicates) as u64;
+    let pixel = Pixels::bytes_per_pixel(plan.choices.replicates, scene.image.spp);
+    let sums = width * height * pixel as u64;
     let spectra = match &plan.tables {
         Tables::Single(tables) => tables.0.spectra.bytes(),
         Tables::Double(tables) => tables.0.spectra.bytes(),

@@ -5,15 +5,7 @@ use glam::DVec3;
 use crate::camera::pixel_size;
 use crate::math::affine::Affine;
 use crate::scene::{Object, Projection, Scene, Shape};
-
-/// A bounding box about the camera; infinite planes have none.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bounds {
-    /// Lower corner.
-    pub low: DVec3,
-    /// Upper corner.
-    pub high: DVec3,
-}
+use crate::shape::hierarchy::Bounds;
 
 /// The object's map with the camera at the origin.
 pub fn about_camera(scene: &Scene, object: &Object) -> Affine {
@@ -24,7 +16,8 @@ pub fn about_camera(scene: &Scene, object: &Object) -> Affine {
     Affine { rows }
 }
 
-/// Bounds of a placed shape: the image of its canonical box.
+/// Bounds of a placed shape about the camera: the image of its canonical box; infinite planes have
+/// none.
 pub fn bounds(shape: &Shape, to_world: &Affine) -> Option<Bounds> {
     let (low, high) = match shape {
         Shape::Plane => return None,
@@ -45,17 +38,15 @@ pub fn bounds(shape: &Shape, to_world: &Affine) -> Option<Bounds> {
     })
 }
 
-impl Bounds {
-    /// Distance between two boxes; 0 where they touch or overlap.
-    pub fn gap(&self, other: &Self) -> f64 {
-        let apart = (other.low - self.high).max(self.low - other.high);
-        apart.max(DVec3::ZERO).length()
-    }
+/// Distance between two boxes; 0 where they touch or overlap.
+fn gap(a: &Bounds, b: &Bounds) -> f64 {
+    let apart = (b.low - a.high).max(a.low - b.high);
+    apart.max(DVec3::ZERO).length()
+}
 
-    /// Largest magnitude of a coordinate.
-    pub fn reach(&self) -> f64 {
-        self.low.abs().max(self.high.abs()).max_element()
-    }
+/// Largest magnitude of a coordinate.
+pub fn reach(bounds: &Bounds) -> f64 {
+    bounds.low.abs().max(bounds.high.abs()).max_element()
 }
 
 /// Centre and radius where the object is a sphere under a similarity.
@@ -116,15 +107,15 @@ pub fn smallest_gap(scene: &Scene) -> Option<f64> {
     let mut smallest = f64::INFINITY;
     for (i, (bounds, ball)) in placed.iter().enumerate() {
         for (other_bounds, other_ball) in &placed[i + 1..] {
-            let gap = match (ball, other_ball) {
+            let between = match (ball, other_ball) {
                 (Some((c1, r1)), Some((c2, r2))) => {
-                    let between = c1.distance(*c2);
-                    (between - r1 - r2).max((r1 - r2).abs() - between)
+                    let centres = c1.distance(*c2);
+                    (centres - r1 - r2).max((r1 - r2).abs() - centres)
                 }
-                _ => bounds.gap(other_bounds),
+                _ => gap(bounds, other_bounds),
             };
-            if gap > ROUNDED * bounds.reach().max(other_bounds.reach()) {
-                smallest = smallest.min(gap);
+            if between > ROUNDED * reach(bounds).max(reach(other_bounds)) {
+                smallest = smallest.min(between);
             }
         }
     }
@@ -145,7 +136,7 @@ pub fn worst_error(
         .objects
         .iter()
         .filter_map(|o| bounds(&o.value.shape, &about_camera(scene, &o.value)))
-        .map(|b| b.reach())
+        .map(|b| reach(&b))
         .fold(0.0, f64::max);
     let pixel = pixel_size(&scene.camera.projection, scene.image.size[1]);
     let mut worst = Error {

@@ -1,8 +1,12 @@
 //! A render: tiles over threads, passes over the whole image, and when to stop.
 
 pub mod bins;
+pub mod dispatch;
 pub mod pass;
+pub mod replay;
 pub mod session;
 pub mod tile;
 
+pub use dispatch::{Instructions, instructions};
+pub use replay::replay;
 pub use session::{Progress, Rendered, Request, render, render_binned};

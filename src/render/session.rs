@@ -6,8 +6,9 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use super::bins::{BinGrid, Bins};
+use super::dispatch::Instructions;
 use super::pass;
-use super::tile::{Instructions, Tile, Window};
+use super::tile::{Tile, Window};
 use crate::film::pixels::{Estimate, to_rgb};
 use crate::integrate::chunk;
 use crate::integrate::intersect::Rungs;
@@ -64,7 +65,7 @@ pub struct Share {
 /// stopping between them favours no sample.
 pub fn render(plan: &Plan, request: &Request, progress: &mut dyn Progress) -> Rendered {
     let tiles = request.window.tiles().into_iter();
-    let tiles = tiles.map(|window| Tile::new(window, plan.choices.replicates));
+    let tiles = tiles.map(|window| Tile::new(window, plan.choices.replicates, request.samples));
     run(plan, request, tiles.collect(), progress)
 }
 
@@ -77,7 +78,7 @@ pub fn render_binned(
 ) -> Rendered {
     let tiles = request.window.tiles().into_iter().map(|window| Tile {
         bins: Some(Bins::new(window.pixels(), Arc::clone(grid))),
-        ..Tile::new(window, plan.choices.replicates)
+        ..Tile::new(window, plan.choices.replicates, request.samples)
     });
     run(plan, request, tiles.collect(), progress)
 }

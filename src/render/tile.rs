@@ -1,12 +1,13 @@
 //! Tiles: the unit of work of one thread.
 
 use super::bins::Bins;
+use super::dispatch::{Instructions, Runs};
 use crate::film::pixels::Pixels;
 use crate::integrate::chunk::{self, CHUNK, Workspace};
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::intersect::Rungs;
 use crate::integrate::model::Model;
-use crate::math::lanes::{Double, Lanes, Scalar, Single};
+use crate::math::lanes::Scalar;
 use crate::sample::sequence::Replicates;
 
 /// Edge of a tile in pixels.
@@ -78,11 +79,11 @@ pub struct Tile {
 }
 
 impl Tile {
-    /// An empty tile.
-    pub fn new(window: Window, replicates: Replicates) -> Self {
+    /// An empty tile for at most `samples` samples a pixel.
+    pub fn new(window: Window, replicates: Replicates, samples: u32) -> Self {
         Self {
             window,
-            pixels: Pixels::new(window.pixels(), replicates),
+            pixels: Pixels::for_samples(window.pixels(), replicates, samples),
             bins: None,
             rungs: Rungs::default(),
             beyond: chunk::Beyond::default(),
@@ -92,17 +93,18 @@ impl Tile {
     }
 
     /// Adds samples `from .. to` of every pixel.
-    #[inline(always)]
-    fn add<L: Lanes, const C: usize>(
+    pub fn add<T: Runs, const C: usize>(
         &mut self,
-        l: L,
-        model: &Model<L::Scalar>,
-        spectrometer: &Spectrometer<L::Scalar>,
+        level: Instructions,
+        scene: &(Model<T>, Spectrometer<T>),
         from: u32,
         to: u32,
-        workspace: &mut Workspace<L::Scalar, C>,
-        requests: &mut Vec<chunk::Request>,
+        worker: &mut Worker<T, C>,
     ) {
+        let Worker {
+            workspace,
+            requests,
+        } = worker;
         workspace.rungs = Rungs::default();
         workspace.beyond = chunk::Beyond::default();
         let width = self.window.width();
@@ -123,7 +125,7 @@ impl Tile {
                     (pixel, sample) = (pixel + 1, from);
                 }
             }
-            chunk::render(l, model, spectrometer, requests, workspace);
+            T::chunk(level, scene, requests, workspace);
             self.collect(requests, workspace);
         }
         self.rungs = self.rungs.joined(workspace.rungs);
@@ -163,87 +165,3 @@ where
     workspace: Workspace<T, C>,
     requests: Vec<chunk::Request>,
 }
-
-/// A scalar whose lanes every instruction set can run.
-pub trait Runs: Scalar {
-    /// Adds samples `from .. to` of every pixel to a tile, on the given instruction set.
-    fn run<const C: usize>(
-        level: Instructions,
-        scene: &(Model<Self>, Spectrometer<Self>),
-        tile: &mut Tile,
-        from: u32,
-        to: u32,
-        worker: &mut Worker<Self, C>,
-    );
-}
-
-/// The instruction sets that a compiled copy of the loop exists for.
-#[derive(Debug, Clone, Copy)]
-pub enum Instructions {
-    /// x86-64 with AVX-512 (Ice Lake and later).
-    #[cfg(target_arch = "x86_64")]
-    Avx512(fearless_simd::Avx512),
-    /// x86-64 with AVX2 and FMA.
-    #[cfg(target_arch = "x86_64")]
-    Avx2(fearless_simd::Avx2),
-    /// Any x86-64.
-    #[cfg(target_arch = "x86_64")]
-    Sse2(fearless_simd::Sse2),
-    /// Arm with Neon.
-    #[cfg(target_arch = "aarch64")]
-    Neon(fearless_simd::Neon),
-    /// No vector unit that is known.
-    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-    Fallback(fearless_simd::Fallback),
-}
-
-macro_rules! runs {
-    ($scalar:ty, $lanes:ident) => {
-        impl Runs for $scalar {
-            fn run<const C: usize>(
-                level: Instructions,
-                scene: &(Model<Self>, Spectrometer<Self>),
-                tile: &mut Tile,
-                from: u32,
-                to: u32,
-                worker: &mut Worker<Self, C>,
-            ) {
-                use fearless_simd::Simd;
-                macro_rules! on {
-                    ($simd:expr) => {{
-                        let simd = $simd;
-                        simd.vectorize(
-                            #[inline(always)]
-                            || {
-                                tile.add(
-                                    $lanes(simd),
-                                    &scene.0,
-                                    &scene.1,
-                                    from,
-                                    to,
-                                    &mut worker.workspace,
-                                    &mut worker.requests,
-                                )
-                            },
-                        )
-                    }};
-                }
-                match level {
-                    #[cfg(target_arch = "x86_64")]
-                    Instructions::Avx512(simd) => on!(simd),
-                    #[cfg(target_arch = "x86_64")]
-                    Instructions::Avx2(simd) => on!(simd),
-                    #[cfg(target_arch = "x86_64")]
-                    Instructions::Sse2(simd) => on!(simd),
-                    #[cfg(target_arch = "aarch64")]
-                    Instructions::Neon(simd) => on!(simd),
-                    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-                    Instructions::Fallback(simd) => on!(simd),
-                }
-            }
-        }
-    };
-}
-
-runs!(f32, Single);
-runs!(f64, Double);

@@ -77,7 +77,7 @@ impl Replicates {
     /// Number of samples among the first `samples` that belong to `replicate`.
     pub fn samples_of(self, replicate: u32, samples: u32) -> u32 {
         match self {
-            Self::Fixed(count) => samples / count + u32::from(replicate < samples % count),
+            Self::Fixed(count) => Self::share(replicate, 0, count, samples),
             Self::Growing => {
                 let (mut count, mut done) = (2, 0);
                 let mut own = 0;
@@ -264,10 +264,15 @@ impl Sequence {
                             permute(l, id.index, across * down, self.slot_seed(l, id, slot));
                         let [u, v, ..] = self.independent(l, id, slot);
                         let position = l.to_real(stratum);
-                        // Exact for the at most 2²⁴ strata: the quotient is at least ½/across away from
-                        // the integer that would be rounded to.
-                        let row = ((position + l.real(0.5)) / l.real(across.into())).floor();
-                        let column = (-row).mul_add(l.real(across.into()), position);
+                        // The quotient is at least ½/across away from the integer that would be
+                        // rounded to; above 2²³ strata the sum itself may be rounded up to the
+                        // next row, which shows in the column. Exact for at most 2²⁴ strata.
+                        let width = l.real(across.into());
+                        let row = ((position + l.real(0.5)) / width).floor();
+                        let column = (-row).mul_add(width, position);
+                        let early = column.lt(l.real(0.0));
+                        let row = l.select(early, row - l.real(1.0), row);
+                        let column = l.select(early, column + width, column);
                         [
                             self.below_one(l, (column + u) / l.real(across.into())),
                             self.below_one(l, (row + v) / l.real(down.into())),

@@ -63,13 +63,24 @@ pub fn nearest(
     priority: impl Fn(usize) -> u8,
     tally: &mut Tally,
 ) -> Option<(usize, Hit)> {
+    nearest_of(objects.iter().enumerate(), query, start, priority, tally)
+}
+
+/// [`nearest`] over some objects with their indices.
+pub fn nearest_of<'a>(
+    objects: impl Iterator<Item = (usize, &'a Placed)>,
+    query: &Query,
+    start: impl Fn(usize) -> Start,
+    priority: impl Fn(usize) -> u8,
+    tally: &mut Tally,
+) -> Option<(usize, Hit)> {
     let limits = Limits::new(query.t_min, query.t_max)?;
     if !query.ray.is_valid() {
         return None;
     }
     let ray = ScaledRay::new(&query.ray);
     let mut best: Option<Candidate<'_>> = None;
-    for (index, object) in objects.iter().enumerate() {
+    for (index, object) in objects {
         let found = object.first_crossing(&ray, &limits, start(index), tally);
         let Some((crossing, rung)) = found else {
             continue;
@@ -100,6 +111,16 @@ pub fn occluded(
     start: impl Fn(usize) -> Start,
     tally: &mut Tally,
 ) -> bool {
+    occluded_by(objects.iter().enumerate(), query, start, tally)
+}
+
+/// [`occluded`] by some objects with their indices.
+pub fn occluded_by<'a>(
+    mut objects: impl Iterator<Item = (usize, &'a Placed)>,
+    query: &Query,
+    start: impl Fn(usize) -> Start,
+    tally: &mut Tally,
+) -> bool {
     let Some(limits) = Limits::new(query.t_min, query.t_max) else {
         return false;
     };
@@ -111,7 +132,7 @@ pub fn occluded(
         ..limits
     };
     let ray = ScaledRay::new(&query.ray);
-    objects.iter().enumerate().any(|(index, object)| {
+    objects.any(|(index, object)| {
         object
             .first_crossing(&ray, &limits, start(index), tally)
             .is_some()

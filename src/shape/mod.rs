@@ -11,6 +11,7 @@
 pub mod cube;
 pub mod cylinder;
 pub mod disk;
+pub mod hierarchy;
 pub mod implicit;
 pub mod ladder;
 pub mod lanes;

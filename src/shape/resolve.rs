@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::list::{Query, nearest, occluded};
+use super::list::{Query, nearest_of, occluded_by};
 use super::{Placed, Ray, Start, Tally};
 
 /// The certified shapes of a scene, by their index among all objects.
@@ -23,16 +23,31 @@ pub struct Departure {
 }
 
 impl Resolver {
-    /// Adds object `object`; at equal t the lower priority wins.
+    /// Adds object `object`, in increasing order; at equal t the lower priority wins.
     pub fn push(&mut self, object: u32, placed: Placed, priority: u8) {
         self.placed.push(placed);
         self.objects.push(object);
         self.priorities.push(priority);
     }
 
-    /// The closest hit: its parameter and object.
+    /// The shapes to ask: all, or those of the candidates.
+    fn chosen<'a>(
+        &'a self,
+        candidates: Option<&'a [u32]>,
+    ) -> Box<dyn Iterator<Item = (usize, &'a Placed)> + 'a> {
+        match candidates {
+            None => Box::new(self.placed.iter().enumerate()),
+            Some(candidates) => Box::new(candidates.iter().filter_map(|object| {
+                let index = self.objects.binary_search(object).ok()?;
+                Some((index, &self.placed[index]))
+            })),
+        }
+    }
+
+    /// The closest hit: its parameter and object; among the candidates, if given.
     pub fn nearest(
         &self,
+        candidates: Option<&[u32]>,
         origin: DVec3,
         direction: DVec3,
         departure: Departure,
@@ -43,8 +58,8 @@ impl Resolver {
             t_min: 0.0,
             t_max: f64::INFINITY,
         };
-        let (index, hit) = nearest(
-            &self.placed,
+        let (index, hit) = nearest_of(
+            self.chosen(candidates),
             &query,
             |i| self.start(i, departure),
             |i| self.priorities[i],
@@ -53,9 +68,15 @@ impl Resolver {
         Some((hit.t, self.objects[index]))
     }
 
-    /// Whether anything but `except` lies strictly between the origin and `t_max`.
+    /// Whether anything but `except` lies strictly between the origin and `t_max`; among the
+    /// candidates, if given.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a ray, its limits and its context"
+    )]
     pub fn occluded(
         &self,
+        candidates: Option<&[u32]>,
         origin: DVec3,
         direction: DVec3,
         t_max: f64,
@@ -75,7 +96,7 @@ impl Resolver {
                 self.start(i, departure)
             }
         };
-        occluded(&self.placed, &query, start, tally)
+        occluded_by(self.chosen(candidates), &query, start, tally)
     }
 
     fn start(&self, index: usize, departure: Departure) -> Start {

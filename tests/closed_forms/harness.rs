@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use etalon::plan::Plan;
-use etalon::render::pass::instructions;
+use etalon::render::instructions;
 use etalon::render::session::{Progress, Rendered, Request, render as run};
 use etalon::render::tile::Window;
 use etalon::scene::{Overrides, parse};

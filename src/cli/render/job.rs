@@ -1,6 +1,6 @@
 //! One picture to render: what, how much of it, and where to.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -93,7 +93,7 @@ fn paths(
         (None, panel) => {
             let stem = arguments.scene.scene.file_stem();
             let stem = stem.map_or_else(|| OsString::from("picture"), OsString::from);
-            with_panel(stem, panel).with_added_extension("exr")
+            PathBuf::from(with_extension(with_panel(stem, panel), "exr"))
         }
         (Some(output), Some(panel)) if arguments.panel_is_all() => before_extension(output, panel),
         (Some(output), _) => output.clone(),
@@ -112,12 +112,19 @@ fn paths(
 }
 
 /// `stem` or `stem-panel`; a panel's name may hold what a file's may not.
-fn with_panel(mut stem: OsString, panel: Option<&str>) -> PathBuf {
+fn with_panel(mut stem: OsString, panel: Option<&str>) -> OsString {
     if let Some(panel) = panel {
         stem.push("-");
         stem.push(panel.replace(|c: char| "/\\:".contains(c) || c.is_control(), "_"));
     }
-    PathBuf::from(stem)
+    stem
+}
+
+/// `stem.extension`; the stem may hold dots of its own.
+fn with_extension(mut stem: OsString, extension: impl AsRef<OsStr>) -> OsString {
+    stem.push(".");
+    stem.push(extension);
+    stem
 }
 
 /// `directory/stem-panel.extension`.
@@ -125,7 +132,7 @@ fn before_extension(output: &Path, panel: &str) -> PathBuf {
     let stem = output.file_stem().unwrap_or_default().to_owned();
     let name = with_panel(stem, Some(panel));
     let name = match output.extension() {
-        Some(extension) => name.with_added_extension(extension),
+        Some(extension) => with_extension(name, extension),
         None => name,
     };
     output.with_file_name(name)

@@ -16,7 +16,8 @@ const CHANNELS: usize = 7;
 /// file, of which the writer makes a copy.
 fn bytes_per_pixel(arguments: &Render, job: &Job) -> usize {
     let bins = job.bins.as_ref().map_or(0, |grid| grid.centres().len());
-    let sums = Pixels::bytes_per_pixel(job.plan.choices.replicates) + bins * size_of::<f64>();
+    let pixel = Pixels::bytes_per_pixel(job.plan.choices.replicates, job.scene.image.spp);
+    let sums = pixel + bins * size_of::<f64>();
     let channels = CHANNELS + layers::channel_count(&arguments.layers) + bins;
     sums + size_of::<Estimate>() + 2 * channels * size_of::<f32>()
 }

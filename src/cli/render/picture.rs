@@ -4,7 +4,7 @@ use etalon::film::provenance::Provenance;
 use etalon::film::{Attribute, Channel, Picture, names};
 use etalon::plan::choose::Precision;
 use etalon::plan::explain;
-use etalon::render::tile::Instructions;
+use etalon::render::Instructions;
 use etalon::scene::SamplerKind;
 
 use super::super::args::Render;

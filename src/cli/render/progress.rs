@@ -37,15 +37,17 @@ pub fn interrupted() -> bool {
 pub struct Watch {
     bar: Option<ProgressBar>,
     pixels: f64,
+    limit: Option<Duration>,
 }
 
 impl Watch {
-    /// Watches a job; shows a bar if `shown` and stderr is a terminal.
-    pub fn new(job: &Job, shown: bool) -> Self {
+    /// Watches a job that may take `limit`; shows a bar if `shown` and stderr is a terminal.
+    pub fn new(job: &Job, limit: Option<Duration>, shown: bool) -> Self {
         let shown = shown && std::io::stderr().is_terminal();
         Self {
             bar: shown.then(|| bar(job)),
             pixels: job.window.pixels() as f64,
+            limit,
         }
     }
 
@@ -55,14 +57,24 @@ impl Watch {
             bar.finish_and_clear();
         }
     }
+
+    /// Seconds left: until the samples are done or the time is up, whichever comes first.
+    fn left(&self, done: u32, wanted: u32, seconds: f64) -> f64 {
+        let samples = seconds * f64::from(wanted - done) / f64::from(done);
+        let limit = self.limit.map_or(f64::INFINITY, |l| l.as_secs_f64());
+        samples.min((limit - seconds).max(0.0))
+    }
 }
 
+/// Parts that the bar is divided into.
+const PARTS: f64 = 1000.0;
+
 fn bar(job: &Job) -> ProgressBar {
-    let bar = ProgressBar::new(job.scene.image.spp.into());
-    let template = "{wide_bar} {pos}/{len} spp  {msg}";
-    if let Ok(style) = ProgressStyle::with_template(template) {
+    let bar = ProgressBar::new(PARTS as u64);
+    if let Ok(style) = ProgressStyle::with_template("{prefix} {wide_bar} {msg}") {
         bar.set_style(style);
     }
+    bar.set_prefix(job.output.display().to_string());
     bar.tick();
     bar
 }
@@ -72,12 +84,12 @@ impl Progress for Watch {
         if let Some(bar) = &self.bar {
             let seconds = spent.as_secs_f64();
             let rate = f64::from(done) * self.pixels / seconds;
-            let left = seconds * f64::from(wanted - done) / f64::from(done);
-            let left = HumanDuration(Duration::try_from_secs_f64(left).unwrap_or(Duration::MAX));
+            let left = self.left(done, wanted, seconds);
             let error = error.map_or_else(|| "unknown".to_owned(), percent);
-            bar.set_position(done.into());
+            bar.set_position((PARTS * seconds / (seconds + left)) as u64);
+            let left = HumanDuration(Duration::try_from_secs_f64(left).unwrap_or(Duration::MAX));
             bar.set_message(format!(
-                "{:.2} M samples/s  {left:#} left  standard error {error}",
+                "{done} spp, {:.2} M samples/s, {left:#} left, standard error {error}",
                 rate * 1e-6
             ));
         }

@@ -22,7 +22,7 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
                 e,
                 dd,
                 #[inline(always)]
-                || reach(l, o, d, e),
+                || reach(l, shape, ray, o, d),
             )
         },
     );

@@ -38,7 +38,7 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     let parallel = !across.sqrt().gt(dd * l.real(8.0));
     if parallel.any() {
         let drift = (across.sqrt() + dd * l.real(2.0))
-            .mul_add(reach(l, o, d, e0), e0 * l.real(2.0))
+            .mul_add(reach(l, shape, ray, o, d), e0 * l.real(2.0))
             * l.real(1.0 + 1e-6);
         let radius = o.x.mul_add(o.x, o.y * o.y).sqrt();
         let far = l.real(f64::INFINITY);
@@ -58,7 +58,7 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
         shape.origin_error(l, ray, 2),
         l.splat(shape.direction_error[2]),
         #[inline(always)]
-        || reach(l, o, d, e0),
+        || reach(l, shape, ray, o, d),
     );
     let near = side_near.max(caps.near);
     let far = side_far.min(caps.far);

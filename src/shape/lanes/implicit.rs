@@ -116,8 +116,8 @@ impl<T: Scalar> LaneImplicit<T> {
                     let inverse = l.real(1.0) / d;
                     let (c, h) = (l.splat(c), l.splat(h));
                     let (t1, t2) = ((c - h - o) * inverse, (c + h - o) * inverse);
-                    near = near.max(t1.min(t2));
-                    far = far.min(t1.max(t2));
+                    near = t1.min(t2).max(near);
+                    far = t1.max(t2).min(far);
                 }
                 let clipped = active & near.lt(far);
                 let mut found = l.mask(false);

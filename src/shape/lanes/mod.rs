@@ -277,11 +277,22 @@ fn slab<L: Lanes>(
     slab
 }
 
-/// Farthest |t| at which a line can be inside the canonical box: (|o|₁ + e + 3)/max|dᵢ|, where o
-/// is within `e`, doubled for the errors of d: those halve max|dᵢ| at most, or else they are
-/// larger than half of it and the drift |dᵢ| t of every axis is bounded all the same.
+/// Farthest |t| at which the line can be inside the canonical box: (|o|₁ + E + 1)/max(|dᵢ| − Dᵢ),
+/// infinite where the direction could be zero for all that is known; 3 for 1 pays for rounding.
 #[inline(always)]
-fn reach<L: Lanes>(l: L, o: Vec3<L::Real>, d: Vec3<L::Real>, e: L::Real) -> L::Real {
+fn reach<L: Lanes>(
+    l: L,
+    shape: &LaneShape<L::Scalar>,
+    ray: &LaneRay<L>,
+    o: Vec3<L::Real>,
+    d: Vec3<L::Real>,
+) -> L::Real {
+    let (e, _) = shape.largest_errors(l, ray, 3);
     let sum = o.x.abs() + o.y.abs() + o.z.abs();
-    (sum + (e + l.real(3.0))) * l.real(2.0) / d.max_abs()
+    let [dx, dy, dz] = shape.direction_error.map(
+        #[inline(always)]
+        |error| l.splat(error),
+    );
+    let slowest = (d.x.abs() - dx).max(d.y.abs() - dy).max(d.z.abs() - dz);
+    (sum + (e + l.real(3.0))) / slowest.max(l.real(0.0))
 }

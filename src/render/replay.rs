@@ -1,0 +1,42 @@
+//! One path again.
+
+use super::dispatch::{Instructions, Runs};
+use crate::integrate::chunk::{Request, Workspace};
+use crate::integrate::develop::Spectrometer;
+use crate::integrate::model::Model;
+use crate::integrate::replay::Replayed;
+use crate::math::lanes::Scalar;
+use crate::plan::{Plan, Tables};
+use crate::spectrum::grid::{CELLS, Cumulative};
+
+/// Takes one sample and writes its path down; the bits are those of a render with the same plan.
+pub fn replay(plan: &Plan, level: Instructions, request: Request) -> Replayed {
+    match (&plan.tables, plan.choices.wavelengths) {
+        (Tables::Single(scene), 4) => one::<f32, 4>(scene, level, request),
+        (Tables::Single(scene), _) => one::<f32, 8>(scene, level, request),
+        (Tables::Double(scene), 4) => one::<f64, 4>(scene, level, request),
+        (Tables::Double(scene), _) => one::<f64, 8>(scene, level, request),
+    }
+}
+
+fn one<T: Runs, const C: usize>(
+    scene: &(Model<T>, Spectrometer<T>),
+    level: Instructions,
+    request: Request,
+) -> Replayed {
+    let mut workspace = Workspace::<T, C>::new();
+    workspace.trace = Some(Vec::new());
+    T::chunk(level, scene, &[request], &mut workspace);
+    let rows = &workspace.rows;
+    let cumulative = Cumulative::new();
+    let wavelengths = (0..C).map(|j| {
+        let cell = (j * (CELLS / C)) as f64 + f64::from(rows.row[0]) + rows.fraction[0].to_f64();
+        cumulative.wavelength(cell / CELLS as f64)
+    });
+    Replayed {
+        wavelengths: wavelengths.collect(),
+        hero: rows.hero[0] as usize,
+        vertices: workspace.trace.take().unwrap_or_default(),
+        tristimulus: workspace.tristimulus[0].map(Scalar::to_f64),
+    }
+}
