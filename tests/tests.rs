@@ -2,7 +2,6 @@
 
 mod cli;
 mod cli_render;
-mod closed_forms;
 mod film_files;
 mod fresnel;
 mod lane_functions;

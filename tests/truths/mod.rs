@@ -23,7 +23,7 @@ use std::sync::OnceLock;
 
 use serde_json::Value;
 
-use crate::truths::{list, number, truth};
+use crate::truth_file::{list, number, truth};
 use harness::{Case, Measurement, judge, measure_all};
 
 fn numbers(value: &Value) -> Vec<f64> {

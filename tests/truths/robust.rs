@@ -155,11 +155,14 @@ fn still_life(scale: f64, shift: DVec3, albedo: f64) -> Text {
     .environment(0.5)
 }
 
+/// Value, standard error and degrees of freedom.
+type Block = (f64, f64, f64);
+
 /// Edge of the blocks of pixels that are compared.
 const BLOCK: usize = 4;
 
-/// Means of blocks of pixels: value, standard error, degrees of freedom.
-fn blocks(text: &Text, seed: u64) -> Vec<(f64, f64, f64)> {
+/// Means of blocks of pixels.
+fn blocks(text: &Text, seed: u64) -> Vec<Block> {
     let estimates = render(text, 2048, seed, None).xyz();
     let width = text.size[0] as usize;
     let across = width / BLOCK;
@@ -176,10 +179,7 @@ fn blocks(text: &Text, seed: u64) -> Vec<(f64, f64, f64)> {
 }
 
 /// Blocks that differ, by Welch's test and Holm's procedure.
-fn different(
-    pictures: &[(String, Vec<(f64, f64, f64)>)],
-    first: &[(f64, f64, f64)],
-) -> Vec<String> {
+fn different(pictures: &[(String, Vec<Block>)], first: &[Block]) -> Vec<String> {
     let mut all = Vec::new();
     for (name, picture) in pictures {
         for (block, (a, b)) in picture.iter().zip(first).enumerate() {

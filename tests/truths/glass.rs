@@ -395,6 +395,9 @@ fn dispersed_bow_mean([a, b]: [f64; 2], x: f64, lamp: &BowLamp) -> f64 {
     })[1]
 }
 
+/// Mean of the row for a lamp between two deviations.
+type BowMean<'a> = dyn Fn([f64; 2]) -> f64 + 'a;
+
 /// The lamp covers deviations from three degrees short of the bow, where nothing can go, to
 /// [`BEYOND`] past it: the less of the row arrives there the larger the least deviation D, and by
 /// the closed form the mean tells D in degrees. `robust` looks at the side where nothing can go.
@@ -416,7 +419,7 @@ fn rainbow() -> Vec<Case> {
         let plain = |[from, to]: [f64; 2]| bow_mean(ior, x, &BowLamp::new(from, to), 200_000);
         let dispersed =
             |[from, to]: [f64; 2]| dispersed_bow_mean([a, b], x, &BowLamp::new(from, to));
-        let kinds: [(&str, String, f64, &dyn Fn([f64; 2]) -> f64); 2] = [
+        let kinds: [(&str, String, f64, &BowMean<'_>); 2] = [
             ("", format!("{{ ior = {ior:?} }}"), 5e-5, &plain),
             (
                 " dispersive",
