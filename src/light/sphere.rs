@@ -16,6 +16,8 @@ pub struct SphereLight<T> {
     centre: [T; 3],
     radius: T,
     radius_squared: T,
+    /// Squared distance from the centre up to which a receiver counts as inside.
+    inside_squared: T,
     inverse_area: T,
     emits: [bool; 2],
 }
@@ -31,11 +33,23 @@ struct Cone<L: Lanes> {
 
 impl<T: Scalar> SphereLight<T> {
     /// From centre and radius.
+    ///
+    /// The inner wall of a sphere that emits inward receives its light, so the points *on* it must
+    /// count as inside, on whichever side of r rounding has put them. With unit roundoff u such a
+    /// point is within 4u (|c| + 4r) of the sphere (three fused products of a unit vector within
+    /// 3u, entries within u, and the centre); so |p − c|² is within u (8 |c|/r + 40) of r², relative
+    /// to it. Twice that covers |c| ≤ √3 max|cᵢ| and the test's own rounding.
     pub fn new(centre: DVec3, radius: f64, emits: [bool; 2]) -> Self {
+        let margin = if emits[1] {
+            T::ROUNDOFF * (16.0 * centre.length() / radius + 80.0)
+        } else {
+            0.0
+        };
         Self {
             centre: centre.to_array().map(T::from_f64),
             radius: T::from_f64(radius),
             radius_squared: T::from_f64(radius * radius),
+            inside_squared: T::from_f64(radius * radius * (1.0 + margin)),
             inverse_area: T::from_f64(1.0 / (4.0 * std::f64::consts::PI * radius * radius)),
             emits,
         }
@@ -52,7 +66,7 @@ impl<T: Scalar> SphereLight<T> {
             to,
             squared,
             height: sine_squared / (one + cosine),
-            outside: sine_squared.lt(one),
+            outside: squared.gt(l.splat(self.inside_squared)),
         }
     }
 

@@ -24,8 +24,13 @@ const FALSE_ALARM: f64 = 1e-3;
 const ROUNDING: f64 = 48.0 / 16_777_216.0;
 /// Samples a pixel of the first pilot; a second one takes 16 times as many.
 const PILOT: u32 = 64;
-/// Most samples a pixel.
-const MOST: f64 = 262_144.0;
+/// The squared error of low-discrepancy points falls a little faster than 1/N.
+const SLOPE: f64 = 1.2;
+/// Error over the wanted one from which a measurement is repeated, and the last round of all.
+const SHARP: f64 = 1.5;
+const LAST_ROUND: u64 = 5;
+/// Most samples a pixel to begin with.
+const MOST: f64 = 131_072.0;
 
 /// A number to be measured: (mean of a channel + offset) × factor.
 #[derive(Debug, Clone)]
@@ -39,6 +44,8 @@ pub struct Case {
     factor: f64,
     /// Known relative error of the set-up, such as the size of the spot that is looked at.
     systematic: f64,
+    /// Relative standard error that the sample count is chosen for.
+    wanted: f64,
 }
 
 impl Case {
@@ -54,6 +61,7 @@ impl Case {
             offset: 0.0,
             factor: 1.0,
             systematic: 0.0,
+            wanted: WANTED_ERROR,
         }
     }
 
@@ -71,6 +79,11 @@ impl Case {
     /// Measures (mean + offset) × factor.
     pub fn mapped(mut self, offset: f64, factor: f64) -> Self {
         (self.offset, self.factor) = (offset, factor);
+        self
+    }
+
+    pub fn wanted(mut self, relative: f64) -> Self {
+        self.wanted = relative;
         self
     }
 
@@ -186,13 +199,14 @@ fn measure_at(case: &Case, spp: u32, seed: u64) -> Measurement {
 }
 
 /// Measures with as many samples as pilots that are thrown away ask for, so that the count
-/// favours no outcome.
-pub fn measure(case: &Case) -> Measurement {
+/// favours no outcome. Where few samples see the light the pilots can be wrong about the error;
+/// what is still not sharp is thrown away as well and measured afresh with four times as many.
+pub fn measure(case: &Case, seed: u64) -> Measurement {
+    let goal = (case.wanted * case.truth).abs();
     let mut spp = PILOT;
     for pilot in 0..2 {
-        let m = measure_at(case, spp, 1 + pilot);
-        let wanted = (WANTED_ERROR * case.truth).abs();
-        let wanted = f64::from(spp) * (m.standard_error / wanted).powi(2);
+        let m = measure_at(case, spp, seed + pilot);
+        let wanted = f64::from(spp) * (m.standard_error / goal).powf(2.0 / SLOPE);
         let last = pilot == 1 || wanted <= f64::from(16 * spp);
         spp = (wanted.clamp(f64::from(PILOT), MOST) as u32).next_power_of_two();
         if last {
@@ -200,15 +214,24 @@ pub fn measure(case: &Case) -> Measurement {
         }
         spp = 16 * PILOT;
     }
-    measure_at(case, spp, 3)
+    let mut round = 2;
+    loop {
+        let m = measure_at(case, spp, seed + round);
+        if m.standard_error <= SHARP * goal || round == LAST_ROUND {
+            return m;
+        }
+        spp *= 4;
+        round += 1;
+    }
 }
 
 /// Measures all, on the threads of the pool.
 pub fn measure_all(cases: Vec<Case>) -> Vec<(Case, Measurement)> {
     cases
         .into_par_iter()
-        .map(|case| {
-            let m = measure(&case);
+        .enumerate()
+        .map(|(i, case)| {
+            let m = measure(&case, 1000 * i as u64);
             (case, m)
         })
         .collect()

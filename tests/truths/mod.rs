@@ -23,28 +23,11 @@ use std::sync::OnceLock;
 
 use serde_json::Value;
 
+use crate::truth_file::{list, number, truth};
 use harness::{Case, Measurement, judge, measure_all};
 
-/// The family of that name.
-fn truth(id: &str) -> Value {
-    static ALL: OnceLock<Value> = OnceLock::new();
-    let all = ALL.get_or_init(|| {
-        let text = match std::env::var("ETALON_TRUTHS") {
-            Ok(path) => std::fs::read_to_string(path).unwrap(),
-            Err(_) => include_str!("../data/truths.json").to_owned(),
-        };
-        serde_json::from_str(&text).unwrap()
-    });
-    let families = all["tests"].as_array().unwrap();
-    families.iter().find(|t| t["id"] == id).unwrap().clone()
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap()
-}
-
 fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().unwrap().iter().map(number).collect()
+    list(value).iter().map(number).collect()
 }
 
 /// The file's numbers have at least nine digits.

@@ -36,7 +36,7 @@ fn boxes(text: &Text, material: &str) -> [(&'static str, Text); 2] {
 
 #[test]
 fn a_closed_box_lets_no_light_out() {
-    let from = DVec3::new(3.0, 2.0, 4.0);
+    let from = DVec3::new(3.0, 2.0, -4.0);
     let text = Text::perspective(from, -from, 40.0)
         .size([32, 32])
         .material("wall", "diffuse = 0.9")
@@ -46,6 +46,13 @@ fn a_closed_box_lets_no_light_out() {
     for (name, text) in boxes(&text, "wall") {
         assert_black(name, &text);
     }
+    // Without a lid it does.
+    let open = FACES[..5].iter().fold(text, |text, face| {
+        let a = super::scenes::across(*face);
+        text.rectangle("wall", a, face.cross(a), *face)
+    });
+    let rendered = render(&open, 256, 5, None);
+    assert!(rendered.xyz().iter().any(|e| e.mean[1] != 0.0));
 }
 
 #[test]
@@ -148,11 +155,14 @@ fn still_life(scale: f64, shift: DVec3, albedo: f64) -> Text {
     .environment(0.5)
 }
 
+/// Value, standard error and degrees of freedom.
+type Block = (f64, f64, f64);
+
 /// Edge of the blocks of pixels that are compared.
 const BLOCK: usize = 4;
 
-/// Means of blocks of pixels: value, standard error, degrees of freedom.
-fn blocks(text: &Text, seed: u64) -> Vec<(f64, f64, f64)> {
+/// Means of blocks of pixels.
+fn blocks(text: &Text, seed: u64) -> Vec<Block> {
     let estimates = render(text, 2048, seed, None).xyz();
     let width = text.size[0] as usize;
     let across = width / BLOCK;
@@ -169,10 +179,7 @@ fn blocks(text: &Text, seed: u64) -> Vec<(f64, f64, f64)> {
 }
 
 /// Blocks that differ, by Welch's test and Holm's procedure.
-fn different(
-    pictures: &[(String, Vec<(f64, f64, f64)>)],
-    first: &[(f64, f64, f64)],
-) -> Vec<String> {
+fn different(pictures: &[(String, Vec<Block>)], first: &[Block]) -> Vec<String> {
     let mut all = Vec::new();
     for (name, picture) in pictures {
         for (block, (a, b)) in picture.iter().zip(first).enumerate() {
