@@ -46,10 +46,10 @@ fn banks_hold_each_cell_once_for_every_set_size() {
         for row in 0..rows {
             for j in 0..C {
                 let cell = f64::from(j as u32 * rows + row);
-                assert_eq!(bank.row::<C>(a, row)[j], cell);
-                assert_eq!(bank.row::<C>(b, row)[j], -cell);
+                assert_eq!(bank.rows::<C>()[(a + row) as usize][j], cell);
+                assert_eq!(bank.rows::<C>()[(b + row) as usize][j], -cell);
                 // Nodes: the row after holds the cells' upper ends.
-                assert_eq!(bank.row::<C>(b, row + 1)[j], -cell - 1.0);
+                assert_eq!(bank.rows::<C>()[(b + row + 1) as usize][j], -cell - 1.0);
             }
         }
     }

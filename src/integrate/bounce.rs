@@ -41,6 +41,18 @@ struct Step<'a, L: Lanes, const C: usize> {
     id: Identity<L>,
 }
 
+/// How rays meet smooth surfaces.
+struct Incidence<L: Lanes> {
+    /// Unit direction of the ray.
+    direction: Vec3<L::Real>,
+    /// Unit normal on the ray's side.
+    facing: Vec3<L::Real>,
+    /// Cosine between normal and reversed ray.
+    cosine: L::Real,
+    /// Direction of reflection.
+    mirrored: Vec3<L::Real>,
+}
+
 /// The scattered rays.
 struct Scattered<L: Lanes> {
     direction: Vec3<L::Real>,
@@ -369,13 +381,13 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         if needs.glass {
             let glass = kind(Scatter::Glass);
             if any(glass) {
-                self.glass(
-                    l,
-                    surface,
-                    glass,
-                    (ray, facing, cosine, mirrored),
-                    &mut next,
-                );
+                let incidence = Incidence {
+                    direction: ray.direction,
+                    facing,
+                    cosine,
+                    mirrored,
+                };
+                self.glass(l, surface, glass, &incidence, &mut next);
             }
         }
         // One Newton step keeps mirrored and refracted directions unit however many there are.
@@ -520,14 +532,14 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         l: L,
         surface: &Surfaces<L>,
         glass: L::Mask,
-        (ray, facing, cosine, mirrored): (&LaneRay<L>, Vec3<L::Real>, L::Real, Vec3<L::Real>),
+        incidence: &Incidence<L>,
         next: &mut Scattered<L>,
     ) {
         let one = L::Scalar::from_f64(1.0);
         let disperses = surface.disperses & !has(l, self.flags, flags::TERMINATED);
         let spreads = disperses.bits();
         let front = surface.front.bits();
-        let cosines = array(l, cosine);
+        let cosines = array(l, incidence.cosine);
         let at = self.table_rows(l, surface.spectrum);
         let slot = Slot::Choice.at(l, self.depth);
         let variates = array(l, self.model.sequence.single(l, self.id, slot));
@@ -574,13 +586,13 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         self.flags = self.flags | bit_where(l, l.mask_from_bits(ends), flags::TERMINATED);
         let refracts = l.mask_from_bits(refracts);
         let eta = l.load(&etas);
-        let (transmitted, _) = fresnel::dielectric(l, cosine, eta);
+        let (transmitted, _) = fresnel::dielectric(l, incidence.cosine, eta);
         let inverse = l.real(1.0) / eta;
-        let refracted = ray
-            .direction
-            .scale(inverse)
-            .along(facing, inverse.mul_add(cosine, -transmitted));
-        next.direction = Vec3::select(l, glass, mirrored, next.direction);
+        let refracted = incidence.direction.scale(inverse).along(
+            incidence.facing,
+            inverse.mul_add(incidence.cosine, -transmitted),
+        );
+        next.direction = Vec3::select(l, glass, incidence.mirrored, next.direction);
         next.direction = Vec3::select(l, refracts, refracted, next.direction);
         next.inward = (next.inward & !refracts) | (refracts & surface.front);
     }

@@ -25,8 +25,10 @@ fn spread<T: Runs, const C: usize>(
     from: u32,
     to: u32,
 ) {
+    // A bridge asks for buffers once a thread; splitting the slice would ask at every split.
     tiles
-        .par_iter_mut()
+        .iter_mut()
+        .par_bridge()
         .for_each_init(Worker::<T, C>::default, |worker, tile| {
             tile.add(level, scene, from, to, worker);
         });

@@ -28,6 +28,9 @@ pub struct Bounds {
     pub high: DVec3,
 }
 
+/// An object's index and its box.
+type Item = (u32, Bounds);
+
 #[derive(Debug, Clone)]
 struct Node<T> {
     low: [[T; WIDTH]; 3],
@@ -95,7 +98,7 @@ impl<T: Scalar> Hierarchy<T> {
         self.nodes.len() * size_of::<Node<T>>()
     }
 
-    fn node(&mut self, objects: &mut [(u32, Bounds)]) -> u32 {
+    fn node(&mut self, objects: &mut [Item]) -> u32 {
         let index = self.nodes.len();
         // An inverted box is missed by every ray.
         self.nodes.push(Node {
@@ -203,7 +206,7 @@ fn outward<T: Scalar>(low: f64, high: f64) -> (T, T) {
     )
 }
 
-fn union(objects: &[(u32, Bounds)]) -> Bounds {
+fn union(objects: &[Item]) -> Bounds {
     let mut all = Bounds {
         low: DVec3::INFINITY,
         high: DVec3::NEG_INFINITY,
@@ -216,7 +219,7 @@ fn union(objects: &[(u32, Bounds)]) -> Bounds {
 }
 
 /// Two halves by the order of the centres along the longest side, ties by index.
-fn halves(objects: &mut [(u32, Bounds)]) -> (&mut [(u32, Bounds)], &mut [(u32, Bounds)]) {
+fn halves(objects: &mut [Item]) -> (&mut [Item], &mut [Item]) {
     let bounds = union(objects);
     let sides = bounds.high - bounds.low;
     let axis = sides.max_position();
