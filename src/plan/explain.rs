@@ -26,7 +26,7 @@ pub fn explain(scene: &Scene, plan: &Plan) -> Vec<String> {
     lines.extend(omitted(plan));
     lines.push(wavelengths(scene, plan));
     lines.push(precision(plan));
-    lines.push(intersection(scene));
+    lines.push(intersection(scene, plan));
     lines.push(sampler(scene, plan));
     lines.push(depth(scene));
     lines.push(memory(scene, plan));
@@ -285,7 +285,11 @@ fn precision(plan: &Plan) -> String {
     )
 }
 
-fn intersection(scene: &Scene) -> String {
+fn intersection(scene: &Scene, plan: &Plan) -> String {
+    let hierarchy = match &plan.tables {
+        Tables::Single(tables) => tables.0.hierarchy.is_some(),
+        Tables::Double(tables) => tables.0.hierarchy.is_some(),
+    };
     let implicit = |object: &&Object| matches!(object.shape, Shape::Implicit(_));
     let implicits = scene
         .objects
@@ -295,9 +299,13 @@ fn intersection(scene: &Scene) -> String {
         .count();
     let count = scene.objects.len();
     let mut text = format!(
-        "intersection: each ray asks a list of {count} {}; what lanes leave undecided goes to the \
-         exact ladder",
-        if count == 1 { "object" } else { "objects" }
+        "intersection: {}; what lanes leave undecided goes to the exact ladder",
+        if hierarchy {
+            format!("a hierarchy of boxes over {count} objects")
+        } else {
+            let noun = if count == 1 { "object" } else { "objects" };
+            format!("each ray asks a list of {count} {noun}")
+        }
     );
     if implicits > 0 {
         text.push_str(&format!(
