@@ -12,4 +12,5 @@ pub mod intersect;
 pub mod model;
 pub mod pool;
 pub mod replay;
+pub mod scatter;
 pub mod surface;
