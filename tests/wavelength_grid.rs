@@ -11,7 +11,7 @@ use crate::truth_file::{list, number, truth};
 #[test]
 fn the_cumulative_density_is_the_published_one() {
     let truth = truth("wavelength_pdf");
-    let grid = Cumulative::new();
+    let grid = Cumulative;
     let us = list(&truth["setup"]["u"]);
     for (u, nm) in us.iter().zip(list(&truth["exact"]["lam"])) {
         let got = grid.wavelength(number(u));

@@ -18,7 +18,7 @@ impl<T: Scalar> Spectrometer<T> {
     /// The CIE 1931 observer for paths of `wavelengths` wavelengths.
     pub fn new(wavelengths: usize) -> Self {
         let mut bank = SpectrumBank::new(wavelengths);
-        let cumulative = Cumulative::new();
+        let cumulative = Cumulative;
         let weights: Vec<[f64; 3]> = (0..CELLS)
             .map(|cell| {
                 let (low, high) = (cumulative.edge(cell), cumulative.edge(cell + 1));

@@ -6,7 +6,7 @@ mod sphere;
 
 use glam::DVec3;
 
-use crate::math::lanes::{Lanes, Mask, Real, Scalar};
+use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::vec3::Vec3;
 use crate::sample::warp::square_to_disk;
 
@@ -238,10 +238,4 @@ fn by_area<L: Lanes>(
 fn area_pdf<R: Real>(cosine: R, height: R, inverse_area: R) -> R {
     let distance = height / cosine;
     distance * distance / cosine.abs() * inverse_area
-}
-
-/// Whether any lane is set; a convenience for the shapes.
-#[inline(always)]
-fn any<M: Mask>(m: M) -> bool {
-    m.any()
 }

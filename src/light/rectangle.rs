@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::{Towards, any, area_pdf, by_area, vector};
+use super::{Towards, area_pdf, by_area, vector};
 use crate::math::functions::{atan2_turns, sin_cos_turns};
-use crate::math::lanes::{Lanes, Real, Scalar, inlined};
+use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
 use crate::math::vec3::Vec3;
 
 /// A rectangle sampled uniformly in solid angle from near points and by area from far ones.
@@ -75,7 +75,7 @@ impl<T: Scalar> RectangleLight<T> {
             corners: l.real(0.0),
             near,
         };
-        if any(near) {
+        if near.any() {
             let zz = z * z;
             let corner = inlined(
                 #[inline(always)]
@@ -116,7 +116,7 @@ impl<T: Scalar> RectangleLight<T> {
                 let mut x = two.mul_add(u, -one) * l.splat(self.half[0]);
                 let mut y = two.mul_add(v, -one) * l.splat(self.half[1]);
                 let to_centre = vector(l, &self.centre) - p;
-                if any(seen.near) {
+                if seen.near.any() {
                     let (sx, sy) = seen.point(l, u, v);
                     // Back to coordinates about the centre.
                     x = l.select(seen.near, sx - (seen.x[0] + seen.x[1]) * l.real(0.5), x);

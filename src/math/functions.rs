@@ -6,7 +6,7 @@
 //! (angle in turns) on the stated domain. Sampling only needs a map and *its own* density to
 //! agree, which does not depend on these errors to first order.
 
-use super::lanes::{Int, Lanes, Mask, Real};
+use super::lanes::{Int, Lanes, Real};
 
 /// Whether lanes are single precision, known at compile time.
 #[inline(always)]
@@ -132,10 +132,4 @@ pub fn atan2_turns<L: Lanes>(l: L, y: L::Real, x: L::Real) -> L::Real {
     let turns = l.select(swap, l.real(0.25) - turns, turns);
     let turns = l.select(x.lt(zero), l.real(0.5) - turns, turns);
     turns.copysign(y)
-}
-
-/// Whether any of the lanes in `m` is true: keeps call sites free of trait imports.
-#[inline(always)]
-pub fn any<M: Mask>(m: M) -> bool {
-    m.any()
 }

@@ -102,7 +102,7 @@ struct Builder<T> {
 
 impl<T: Scalar> Builder<T> {
     fn new(wavelengths: usize) -> Self {
-        let cumulative = Cumulative::new();
+        let cumulative = Cumulative;
         Self {
             bank: SpectrumBank::new(wavelengths),
             edges: (0..=CELLS).map(|cell| cumulative.edge(cell)).collect(),

@@ -60,7 +60,7 @@ impl BinGrid {
         if let Some(&centre) = centres.iter().find(|&&c| !inside(c)) {
             return Err(BinError::Outside { centre });
         }
-        let cumulative = Cumulative::new();
+        let cumulative = Cumulative;
         let mut starts = vec![0];
         let mut shares = Vec::new();
         for cell in 0..CELLS {

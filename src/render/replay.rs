@@ -28,7 +28,7 @@ fn one<T: Runs, const C: usize>(
     workspace.trace = Some(Vec::new());
     T::chunk(level, scene, &[request], &mut workspace);
     let rows = &workspace.rows;
-    let cumulative = Cumulative::new();
+    let cumulative = Cumulative;
     let wavelengths = (0..C).map(|j| {
         let cell = (j * (CELLS / C)) as f64 + f64::from(rows.row[0]) + rows.fraction[0].to_f64();
         cumulative.wavelength(cell / CELLS as f64)

@@ -9,6 +9,7 @@
 //! anything constant over a cell are exact; *node* rows (refractive indices) hold values at the
 //! cells' lower ends, linear between.
 
+use super::wavelengths::WavelengthPdf;
 use crate::math::lanes::Scalar;
 
 /// Shortest wavelength, nm.
@@ -18,41 +19,14 @@ pub const LONGEST: f64 = 830.0;
 /// Number of cells, a multiple of every number of wavelengths.
 pub const CELLS: usize = 4096;
 
-/// Rate a of the density a/cosh²(a (λ − 538 nm))/span, nm⁻¹ (M. Radziszewski, K. Boryczko and
-/// W. Alda, "An improved technique for full spectral rendering", 2009, as in pbrt-v4 section
-/// 4.5.4).
-const RATE: f64 = 0.0072;
-/// Wavelength of the density's maximum, nm.
-const CENTRE: f64 = 538.0;
-
-/// The cumulative density and its inverse.
-#[derive(Debug, Clone, Copy)]
-pub struct Cumulative {
-    short: f64,
-    span: f64,
-}
-
-impl Default for Cumulative {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+/// The inverse of the cumulative density by which heroes are drawn, [`WavelengthPdf::Visible`].
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Cumulative;
 
 impl Cumulative {
-    /// The density over the whole band.
-    pub fn new() -> Self {
-        let short = libm::tanh(RATE * (CENTRE - SHORTEST));
-        let long = libm::tanh(RATE * (LONGEST - CENTRE));
-        Self {
-            short,
-            span: short + long,
-        }
-    }
-
-    /// Wavelength, nm, at cumulative density `u`: 538 − artanh(short − u span)/a.
+    /// Wavelength, nm, at cumulative density `u`.
     pub fn wavelength(&self, u: f64) -> f64 {
-        let nm = CENTRE - libm::atanh(self.short - u * self.span) / RATE;
-        nm.clamp(SHORTEST, LONGEST)
+        WavelengthPdf::Visible.sample(u)
     }
 
     /// Wavelength at the lower end of a cell, nm.
