@@ -9,6 +9,7 @@ pub mod material;
 pub mod math;
 pub mod plan;
 pub mod render;
+pub mod root;
 pub mod sample;
 pub mod scene;
 pub mod shape;

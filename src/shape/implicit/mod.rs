@@ -1,3 +1,4 @@
 //! Implicit surfaces in f64, one ray at a time.
 
 pub mod baseline;
+pub mod tape;

@@ -1,0 +1,26 @@
+//! Root finders: siblings that look for the first zero of a function of one variable.
+//!
+//! Each answers *found* with an enclosure, *absent* as a proof, or *undecided*; none of them turns
+//! the third into one of the others. They know neither rays nor surfaces: what they are given is
+//! the function along a stretch of t.
+
+/// A zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Root {
+    /// An interval [low, high] of t that holds the first zero. Finders that prove nothing give
+    /// their estimate twice.
+    pub enclosure: [f64; 2],
+    /// How many times it is a zero, where that is known; at even ones the sign does not change.
+    pub multiplicity: Option<u32>,
+}
+
+/// What a finder knows of the first zero within a stretch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Outcome {
+    /// It is there.
+    Found(Root),
+    /// There is none.
+    Absent,
+    /// The finder's arithmetic or its work bound did not suffice.
+    Undecided,
+}
