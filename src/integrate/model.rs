@@ -1,5 +1,6 @@
 //! What the loop works on: the scene as flat tables of lane scalars, built by the plan.
 
+use super::parts::Parts;
 use crate::camera::LaneCamera;
 use crate::light::LaneLight;
 use crate::math::lanes::Scalar;
@@ -105,8 +106,12 @@ pub struct Model<T: Scalar> {
     pub hierarchy: Option<Many<T>>,
     /// Placed shapes by object.
     pub shapes: Vec<LaneShape<T>>,
+    /// The objects that shadow rays are tested against, in order.
+    pub occluders: Vec<u32>,
     /// Implicit surfaces: (object, surface).
     pub implicits: Vec<(u32, LaneImplicit<T>)>,
+    /// What hits look like, by part.
+    pub parts: Parts<T>,
     /// Appearance by object.
     pub shading: Vec<ObjectShading<T>>,
     /// Samplable lights.
@@ -117,4 +122,11 @@ pub struct Model<T: Scalar> {
     pub spectra: SpectrumBank<T>,
     /// Decides what lanes cannot.
     pub resolver: Resolver,
+}
+
+impl<T: Scalar> Model<T> {
+    /// Whether an object can hide a light from a surface.
+    pub fn hides(&self, object: u32) -> bool {
+        self.occluders.binary_search(&object).is_ok()
+    }
 }
