@@ -108,7 +108,8 @@ impl Record {
         if answer.hit && answer.miss {
             self.wrong.push(what());
         } else if answer.miss {
-            if truth.is_some() {
+            // The shape may also lie behind as a whole.
+            if truth.is_some_and(|truth| truth.far.t >= 0.0) {
                 self.wrong.push(what());
             }
         } else if answer.hit {

@@ -169,12 +169,14 @@ impl<L: Lanes> Search<L> {
         let span = shape.span(l, ray);
         let own = leaving.object.same(index);
         let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
-        let mut take = c.certain & c.at.high.lt(self.best.high);
         let mut possible = c.possible;
         if let Some(asked) = asked {
-            take = take & asked;
             possible = possible & asked;
         }
+        if !possible.any() {
+            return;
+        }
+        let take = c.certain & possible & c.at.high.lt(self.best.high);
         // Of this crossing and the best so far, the one that is not taken remains a rival.
         let loser = l.select(take, self.best.low, c.at.low);
         self.rival = l.select(possible, loser.min(self.rival), self.rival);
@@ -395,12 +397,15 @@ impl<L: Lanes> Blocks<L> {
         let span = shape.span(l, &shadow.ray);
         let own = leaving.object.same(index);
         let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
-        let mut counted = !shadow.except.same(index);
+        let mut counted = !shadow.except.same(index) & c.possible;
         if let Some(asked) = asked {
             counted = counted & asked;
         }
+        if !counted.any() {
+            return;
+        }
         self.blocked = self.blocked | (c.certain & c.at.high.lt(shadow.limit) & counted);
-        self.doubtful = self.doubtful | (c.possible & c.at.low.lt(shadow.limit) & counted);
+        self.doubtful = self.doubtful | (c.at.low.lt(shadow.limit) & counted);
     }
 
     /// The same as one copy of code, for the hierarchy.

@@ -2,7 +2,7 @@
 
 use super::parts::Parts;
 use crate::camera::LaneCamera;
-use crate::light::LaneLight;
+use crate::light::{LaneLight, SmallLights};
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Sequence;
 use crate::shape::hierarchy::Hierarchy;
@@ -116,6 +116,8 @@ pub struct Model<T: Scalar> {
     pub shading: Vec<ObjectShading<T>>,
     /// Samplable lights.
     pub lights: Vec<LaneLight<T>>,
+    /// The lights once more, where several can be sampled together.
+    pub small_lights: Option<Box<SmallLights<T>>>,
     /// Spectrum of the environment.
     pub environment: Option<u32>,
     /// All spectra on the wavelength grid.

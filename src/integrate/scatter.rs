@@ -214,7 +214,25 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let mut spectrum = l.int(0);
         let mut except = l.int(NOTHING);
         let mut extended = l.mask(true);
-        let mut pending = diffuse.bits();
+        let mut left = diffuse;
+        if let Some(table) = &model.small_lights {
+            let spheres = diffuse & l.lookup_int(&table.is_sphere, chosen).same(l.int(1));
+            if any(spheres) {
+                let own = table
+                    .spheres
+                    .at(l, chosen)
+                    .sample(l, point, numbers, spheres);
+                towards = Towards {
+                    pdf: own.pdf * l.lookup(&table.probability, chosen),
+                    valid: spheres & own.valid,
+                    ..own
+                };
+                spectrum = l.lookup_int(&table.spectrum, chosen);
+                except = l.lookup_int(&table.object, chosen);
+                left = diffuse & !spheres;
+            }
+        }
+        let mut pending = left.bits();
         while pending != 0 {
             let k = l.int_lane(chosen, pending.trailing_zeros() as usize);
             let here = diffuse & chosen.same(l.int(k));

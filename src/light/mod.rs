@@ -2,6 +2,7 @@
 
 mod cube;
 mod rectangle;
+mod small;
 mod sphere;
 
 use glam::DVec3;
@@ -12,7 +13,8 @@ use crate::sample::warp::square_to_disk;
 
 pub use cube::CubeLight;
 pub use rectangle::RectangleLight;
-pub use sphere::SphereLight;
+pub use small::SmallLights;
+pub use sphere::{SphereLight, SphereTable};
 
 /// A sampled direction towards a light.
 #[derive(Clone, Copy)]

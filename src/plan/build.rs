@@ -10,7 +10,9 @@ use crate::camera::LaneCamera;
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::model::{Checker, Many, Model, ObjectShading, Scatter};
 use crate::integrate::parts::Parts;
-use crate::light::{CubeLight, LaneLight, LightShape, PlanarLight, RectangleLight, SphereLight};
+use crate::light::{
+    CubeLight, LaneLight, LightShape, PlanarLight, RectangleLight, SmallLights, SphereLight,
+};
 use crate::math::affine::Affine;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Sequence;
@@ -81,6 +83,7 @@ pub fn build<T: Scalar>(
         shapes: builder.shapes,
         implicits: builder.implicits,
         shading: builder.shading,
+        small_lights: SmallLights::new(&lights).map(Box::new),
         lights,
         environment,
         spectra: builder.bank,

@@ -75,7 +75,7 @@ pub struct Span<L: Lanes> {
     pub far: Enclosure<L>,
     /// The line certainly meets the shape.
     pub hit: L::Mask,
-    /// The line certainly misses it.
+    /// The line certainly misses it, or meets it only behind the origin.
     pub miss: L::Mask,
     /// Which of the shape's parts it enters and leaves by, if it meets it.
     pub parts: [L::Int; 2],

@@ -95,7 +95,7 @@ fn ellipsoid_span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>
 /// the centre over r, so that the bounds above, times r or r², hold with E r = 6u (max|o| + |c| + r),
 /// D r = 6u, and q = D r, where 64q² is less than u.
 ///
-/// Packets that surely pass the ball skip the roots.
+/// Packets that surely pass the ball or leave it behind skip the roots.
 #[inline(always)]
 fn ball_span<L: Lanes>(l: L, ball: &Ball<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
     let u = <L::Scalar as Scalar>::ROUNDOFF;
@@ -110,7 +110,10 @@ fn ball_span<L: Lanes>(l: L, ball: &Ball<L::Scalar>, ray: &LaneRay<L>) -> Span<L
     let e = (foot_t.abs() + ray.extent).mul_add(unit, l.splat(ball.offset_error));
     let relative = e.mul_add(l.splat(ball.curvature), l.real(9.0 * u));
     let c_error = (e * e).mul_add(l.real(16.0), relative * squared.max(radius_squared));
-    let miss = c.lt(-c_error);
+    // Behind: the far end is at most t₀ + δt₀ + r, with 5e for δt₀ and its rounding.
+    let radius = l.splat(ball.radius);
+    let behind = foot_t.lt(-e.mul_add(l.real(5.0), radius.mul_add(l.real(50.0 * u), radius)));
+    let miss = c.lt(-c_error) | behind;
     let mut span = Span {
         near: Enclosure::about(foot_t, l.real(0.0)),
         far: Enclosure::about(foot_t, l.real(0.0)),
