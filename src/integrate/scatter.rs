@@ -11,7 +11,6 @@ use crate::material::fresnel;
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
 use crate::math::vec3::Vec3;
 use crate::sample::Slot;
-use crate::sample::mis::power_weight;
 use crate::sample::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
 use crate::shape::lanes::LaneRay;
 
@@ -257,9 +256,11 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             valid,
         } = towards;
         let cosine = direction.dot(normal);
-        let scattering = cosine_hemisphere_pdf(l, cosine);
-        let mis = l.select(extended, power_weight(l, pdf, scattering), l.real(1.0));
-        let weight = scattering * mis / pdf;
+        // With q the ratio of the densities, the power heuristic is 1/(1 + q²) (see `sample::mis`),
+        // and bsdf · cos/pdf is q times the albedo.
+        let ratio = cosine_hemisphere_pdf(l, cosine) / pdf;
+        let shared = ratio / ratio.mul_add(ratio, l.real(1.0));
+        let weight = l.select(extended, shared, ratio);
         let asked = diffuse & valid & cosine.gt(zero) & weight.gt(zero);
         let mut lit = Lit {
             spectrum,

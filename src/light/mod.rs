@@ -238,6 +238,5 @@ fn by_area<L: Lanes>(
 /// Density in solid angle of uniform sampling of a plane area A: d²/(A |cos|) with d = h/cos.
 #[inline(always)]
 fn area_pdf<R: Real>(cosine: R, height: R, inverse_area: R) -> R {
-    let distance = height / cosine;
-    distance * distance / cosine.abs() * inverse_area
+    height * height * inverse_area / (cosine * cosine * cosine.abs())
 }

@@ -14,6 +14,9 @@ use fearless_simd::{
     Level, f32x16, f64x8, i32x16, mask32x16, mask64x8, u8x16, u8x64, u32x16, u64x8,
 };
 
+/// Most lanes of a packet.
+pub const WIDEST: usize = 16;
+
 /// The scalar stored in one lane, as arrays keep it.
 pub trait Scalar:
     Copy

@@ -3,7 +3,7 @@
 use super::hash::{Keys, mix, pcg4d};
 use super::permute::permute;
 use super::{Slot, sobol};
-use crate::math::lanes::{Int, Lanes, Real, inlined};
+use crate::math::lanes::{Int, Lanes, Real, WIDEST, inlined};
 use crate::scene::SamplerKind;
 
 /// Which points a render uses, and how many of them a replicate may see.
@@ -56,6 +56,40 @@ impl Replicates {
                     bits += 1;
                 }
                 (i & ((1 << bits) - 1), i >> bits)
+            }
+        }
+    }
+
+    /// [`Self::place`] of a packet of samples.
+    #[inline(always)]
+    pub fn places<L: Lanes>(self, l: L, i: L::Int) -> (L::Int, L::Int) {
+        match self {
+            Self::Fixed(count) => {
+                let mut samples = [0; WIDEST];
+                l.store_int(i, &mut samples);
+                let (mut replicates, mut indices) = ([0; WIDEST], [0; WIDEST]);
+                for ((i, replicate), index) in samples.iter().zip(&mut replicates).zip(&mut indices)
+                {
+                    *index = i / count;
+                    *replicate = i - *index * count;
+                }
+                (l.load_int(&replicates), l.load_int(&indices))
+            }
+            Self::Growing => {
+                let (mut replicate, mut index) = (i & l.int(1), i.right(1));
+                for (bits, start) in (1..).zip(GROWTH) {
+                    let count = 1 << bits;
+                    let new = i.minus(l.int(start));
+                    let catching_up = l.int(count).plus(new & l.int(count - 1));
+                    let before = i.below(l.int(start));
+                    let caught_up = !i.below(l.int(2 * start));
+                    replicate = l.select_int(before, replicate, catching_up);
+                    index = l.select_int(before, index, new.right(bits));
+                    let all = i & l.int(2 * count - 1);
+                    replicate = l.select_int(caught_up, all, replicate);
+                    index = l.select_int(caught_up, i.right(bits + 1), index);
+                }
+                (replicate, index)
             }
         }
     }
