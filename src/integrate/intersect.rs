@@ -165,13 +165,13 @@ impl<L: Lanes> Search<L> {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
         let index = l.int(k);
-        let span = shape.span(l, ray, asked);
+        let span = shape.span(l, ray, asked, self.best.high);
+        if !(asked & !span.miss).any() {
+            return;
+        }
         let own = leaving.object.same(index);
         let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
         let possible = c.possible & asked;
-        if !possible.any() {
-            return;
-        }
         let take = c.certain & possible & c.at.high.lt(self.best.high);
         // Of this crossing and the best so far, the one that is not taken remains a rival.
         let loser = l.select(take, self.best.low, c.at.low);
@@ -404,13 +404,13 @@ impl<L: Lanes> Blocks<L> {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
         let index = l.int(k);
-        let span = shape.span(l, &shadow.ray, asked);
+        let span = shape.span(l, &shadow.ray, asked, shadow.limit);
+        if !(asked & !span.miss).any() {
+            return;
+        }
         let own = leaving.object.same(index);
         let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
         let counted = c.possible & asked & !shadow.except.same(index);
-        if !counted.any() {
-            return;
-        }
         self.blocked = self.blocked | (c.certain & c.at.high.lt(shadow.limit) & counted);
         self.doubtful = self.doubtful | (c.at.low.lt(shadow.limit) & counted);
     }
