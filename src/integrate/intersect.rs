@@ -78,34 +78,33 @@ fn candidate<L: Lanes>(
     inward: L::Mask,
 ) -> Candidate<L> {
     let zero = l.real(0.0);
-    let Span { near, far, .. } = span;
-    if flat {
-        let possible = !(span.miss | own | near.high.lt(zero));
-        return Candidate {
-            at: Enclosure {
-                // The larger of NaN and 0 is 0: what is not known could be anywhere.
-                low: near.low.max(zero),
-                high: near.high,
-            },
-            certain: span.hit & near.low.gt(zero) & possible,
-            possible,
-            part: span.parts[0],
-        };
+    let Span {
+        mut near, far, hit, ..
+    } = *span;
+    let mut excluded = span.miss | own;
+    if !flat {
+        let inside = own & inward;
+        if inside.any() {
+            // The entering crossing is the start.
+            let behind = l.real(f64::NEG_INFINITY);
+            near.low = l.select(inside, behind, near.low);
+            near.high = l.select(inside, behind, near.high);
+            excluded = span.miss | (own & !inside);
+        }
     }
-    let own_inward = own & inward;
-    let possible = !(span.miss | far.high.lt(zero) | (own & !inward));
-    let enters = near.low.gt(zero) & !own_inward;
-    let leaves = (near.high.lt(zero) | own_inward) & far.low.gt(zero);
-    let certain = span.hit & (enters | leaves) & possible;
-    let low = l.select(enters, near.low, l.select(certain, far.low, near.low));
+    let leaves = near.high.lt(zero);
+    let low = l.select(leaves, far.low, near.low);
+    let high = l.select(leaves, far.high, near.high);
+    let possible = !(excluded | high.lt(zero));
     Candidate {
         at: Enclosure {
+            // The larger of NaN and 0 is 0: what is not known could be anywhere.
             low: low.max(zero),
-            high: l.select(enters, near.high, far.high),
+            high,
         },
-        certain,
+        certain: hit & possible & low.gt(zero),
         possible,
-        part: l.select_int(enters, span.parts[0], span.parts[1]),
+        part: l.select_int(leaves, span.parts[1], span.parts[0]),
     }
 }
 
