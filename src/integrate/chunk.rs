@@ -6,7 +6,7 @@ use super::bounce::bounce;
 use super::develop::Spectrometer;
 use super::intersect::{NOTHING, Rungs};
 use super::model::Model;
-use super::pool::{IntField, Pool, RealField, Rows, WIDEST, flags};
+use super::pool::{Carried, IntField, Pool, RealField, Rows, WIDEST, flags};
 use super::replay::Vertex;
 use crate::math::lanes::{Int, Lanes, Scalar};
 use crate::spectrum::grid::CELLS;
@@ -241,8 +241,7 @@ fn start<L: Lanes, const C: usize>(
         &mut rows.hero[first..],
     );
     l.store(position - l.to_real(cell), &mut rows.fraction[first..]);
-    rows.radiance[range.clone()].fill([L::Scalar::default(); C]);
-    rows.throughput[range].fill([L::Scalar::from_f64(1.0); C]);
+    rows.paths[range].fill(Carried::new());
 
     let at = pool.length;
     for (field, v) in [

@@ -72,13 +72,38 @@ pub struct Pool<T> {
     pub masks: Vec<u32>,
 }
 
+/// A path's values at its wavelengths, which are wanted together.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+pub struct Carried<T, const C: usize> {
+    /// Throughput of the path so far.
+    pub throughput: [T; C],
+    /// Radiance gathered.
+    pub radiance: [T; C],
+}
+
+impl<T: Scalar, const C: usize> Carried<T, C> {
+    /// At the camera.
+    #[inline(always)]
+    pub fn new() -> Self {
+        Self {
+            throughput: [T::from_f64(1.0); C],
+            radiance: [T::default(); C],
+        }
+    }
+}
+
+impl<T: Scalar, const C: usize> Default for Carried<T, C> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 /// Spectra of the samples of a chunk, one row of C values a sample.
 #[derive(Debug)]
 pub struct Rows<T, const C: usize> {
-    /// Radiance gathered.
-    pub radiance: Vec<[T; C]>,
-    /// Throughput of the path so far.
-    pub throughput: Vec<[T; C]>,
+    /// What the paths carry and have gathered.
+    pub paths: Vec<Carried<T, C>>,
     /// Which row of every spectrum holds the path's wavelengths.
     pub row: Vec<u32>,
     /// Which of the wavelengths is the hero.
@@ -91,8 +116,7 @@ impl<T: Scalar, const C: usize> Rows<T, C> {
     /// Room for `samples` samples.
     pub fn new(samples: usize) -> Self {
         Self {
-            radiance: vec![[T::default(); C]; samples],
-            throughput: vec![[T::default(); C]; samples],
+            paths: vec![Carried::new(); samples],
             row: vec![0; samples],
             hero: vec![0; samples],
             fraction: vec![T::default(); samples],
