@@ -1,6 +1,13 @@
-//! Implicit surfaces in f64, one ray at a time.
+//! Implicit surfaces f(x, y, z) = 0.
 
 pub mod along;
 pub mod baseline;
+pub mod clip;
+pub mod enclosed;
+pub mod expression;
+pub mod named;
+pub mod polynomial;
 pub mod program;
+pub mod rational;
+pub mod structure;
 pub mod tape;

@@ -5,8 +5,9 @@
 
 use super::tape::{Binary, Operation, Place, Tape, Unary};
 use crate::math::instructions::DoubleLanes;
-use crate::math::interval::{Domain, Interval, enclosing_rational};
+use crate::math::interval::{Domain, Interval, ScalarInterval, enclosing_rational};
 use crate::math::jet::Jet;
+use crate::math::scalar_lane::One;
 
 /// One operation on registers.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -310,7 +311,7 @@ impl<'a> Compiler<'a> {
             Operation::WholePower(a, n) => Step::WholePower(self.at(a), n),
         };
         self.register[place] = Some(self.steps.len());
-        self.steps.push(step);
+        self.steps.push(self.folded(step).unwrap_or(step));
     }
 
     /// Where an earlier result is; earlier places have registers.
@@ -350,6 +351,27 @@ impl<'a> Compiler<'a> {
             },
             _ => Step::Binary(function, at_a, at_b),
         }
+    }
+
+    /// The enclosure of a step that depends on constants alone; none where it may be undefined.
+    fn folded(&self, step: Step) -> Option<Step> {
+        let constant = |place: Place| match self.steps[place] {
+            Step::Constant(bounds) => Some(ScalarInterval::splat(One, bounds)),
+            _ => None,
+        };
+        let mut domain = Domain::unbroken(One);
+        let value = match step {
+            Step::Unary(function, a) => constant(a)?.unary(function, &mut domain),
+            Step::Binary(function, a, b) => {
+                constant(a)?.binary(function, constant(b)?, &mut domain)
+            }
+            Step::WholePower(a, n) => Arithmetic::whole_power(constant(a)?, n, &mut domain),
+            Step::Square(a) => constant(a)?.squared(),
+            Step::TimesNumber(a, c) => Interval::times_number(constant(a)?, c),
+            Step::PlusConstant(a, c) => constant(a)? + ScalarInterval::splat(One, c),
+            _ => return None,
+        };
+        (!domain.broken && !domain.void).then_some(Step::Constant([value.low, value.high]))
     }
 
     /// Sine and cosine of the same angle are computed together.

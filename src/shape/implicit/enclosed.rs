@@ -1,0 +1,152 @@
+//! First zeros of a field along rays by interval subdivision, for any expression.
+
+use glam::DVec3;
+
+use super::along::Along;
+use super::clip::{Clipped, clipped};
+use super::program::Program;
+use super::tape::Tape;
+use crate::math::double_double::DoubleDouble;
+use crate::math::instructions::{DoubleLanes, Instructions, Job};
+use crate::math::interval::ScalarInterval;
+use crate::math::scalar_lane::One;
+use crate::root::interval::{Search, first_zero};
+use crate::root::{Outcome, Root};
+use crate::shape::line::LocalRay;
+
+/// Most evaluations for one ray: well above what separated zeros need (some tens), and about a
+/// millisecond for a field of a dozen operations.
+pub const WORK_BOUND: u32 = 2_000;
+
+/// A field made ready for interval subdivision, as its factors.
+#[derive(Debug, Clone)]
+pub struct EnclosedField {
+    factors: Vec<(Program, u32)>,
+    instructions: Instructions,
+}
+
+impl EnclosedField {
+    /// Compiles a field.
+    pub fn new(tape: &Tape) -> Self {
+        Self::with_instructions(tape, Instructions::best())
+    }
+
+    /// Compiles a field for an instruction set; the results are the same with each.
+    pub fn with_instructions(tape: &Tape, instructions: Instructions) -> Self {
+        let factors = tape.factors().factors;
+        let compiled = factors
+            .iter()
+            .map(|f| (Program::new(&f.tape), f.multiplicity));
+        Self {
+            factors: compiled.collect(),
+            instructions,
+        }
+    }
+
+    /// The first zero on a ray inside a closed box with t_min < t < t_max; t = t_min counts where
+    /// `closed`, as far as it can be told. `bound` limits the evaluations.
+    pub fn first_hit(
+        &self,
+        ray: &LocalRay<DoubleDouble>,
+        inside: &[DVec3; 2],
+        limits: [f64; 2],
+        bound: u32,
+    ) -> Search {
+        let Some(clipped) = clipped(ray, inside, limits) else {
+            return Search {
+                outcome: Outcome::Absent,
+                evaluations: 0,
+            };
+        };
+        self.instructions.run(First {
+            field: self,
+            clipped: &clipped,
+            bound,
+        })
+    }
+}
+
+struct First<'a> {
+    field: &'a EnclosedField,
+    clipped: &'a Clipped,
+    bound: u32,
+}
+
+impl Job for First<'_> {
+    type Output = Search;
+
+    #[inline(always)]
+    fn run<L: DoubleLanes>(self, lanes: L) -> Search {
+        let clipped = self.clipped;
+        let length = point(clipped.far[1]) - point(clipped.start);
+        let mut to = length.high;
+        let mut first: Option<Root> = None;
+        let mut evaluations = 0;
+        for (program, multiplicity) in &self.field.factors {
+            let mut along = Along::new(lanes, program, &clipped.line);
+            let search = first_zero(&mut along, [0.0, to], self.bound);
+            evaluations += search.evaluations;
+            match search.outcome {
+                Outcome::Absent => {}
+                Outcome::Undecided => {
+                    return Search {
+                        outcome: Outcome::Undecided,
+                        evaluations,
+                    };
+                }
+                Outcome::Found(root) => {
+                    let root = Root {
+                        multiplicity: root.multiplicity.map(|m| m * multiplicity),
+                        ..root
+                    };
+                    let joined = first.map_or(root, |first| earlier(&first, &root));
+                    to = joined.enclosure[1];
+                    first = Some(joined);
+                }
+            }
+        }
+        Search {
+            outcome: first.map_or(Outcome::Absent, |root| placed(clipped, &root)),
+            evaluations,
+        }
+    }
+}
+
+fn point(x: f64) -> ScalarInterval {
+    ScalarInterval::point(One, x)
+}
+
+/// The earlier of the first zeros of two factors; which it is stays open where the enclosures
+/// overlap.
+fn earlier(a: &Root, b: &Root) -> Root {
+    if a.enclosure[1] < b.enclosure[0] {
+        return *a;
+    }
+    if b.enclosure[1] < a.enclosure[0] {
+        return *b;
+    }
+    Root {
+        enclosure: [0, 1].map(|i| a.enclosure[i].min(b.enclosure[i])),
+        multiplicity: None,
+    }
+}
+
+/// A zero in s as one in t, if it surely is within the stretch.
+fn placed(clipped: &Clipped, root: &Root) -> Outcome {
+    let [s_low, s_high] = root.enclosure;
+    let low = (point(clipped.start) + point(s_low))
+        .low
+        .max(clipped.near[0]);
+    let high = (point(clipped.start) + point(s_high)).high;
+    if low > clipped.far[1] {
+        return Outcome::Absent;
+    }
+    let within = low >= clipped.near[1] && high <= clipped.far[0];
+    if !within {
+        return Outcome::Undecided;
+    }
+    Outcome::Found(Root {
+        enclosure: [low, high],
+        multiplicity: root.multiplicity,
+    })
+}
