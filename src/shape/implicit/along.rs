@@ -58,16 +58,18 @@ impl<'a, L: DoubleLanes> Along<'a, L> {
     }
 
     #[inline(always)]
+    fn jet(&self, axis: usize, s: &Interval<L>) -> Jet<L> {
+        Jet {
+            value: self.coordinate(axis, s),
+            slope: Interval::splat(self.lanes, self.line.direction[axis]),
+        }
+    }
+
+    #[inline(always)]
     fn over_lanes(&mut self, from: &[f64], to: &[f64], place: usize, pieces: &mut Pieces) {
         let l = self.lanes;
         let s = Interval::new(l, l.load(from), l.load(to));
-        let coordinates = std::array::from_fn(
-            #[inline(always)]
-            |axis| Jet {
-                value: self.coordinate(axis, &s),
-                slope: Interval::splat(l, self.line.direction[axis]),
-            },
-        );
+        let coordinates = [self.jet(0, &s), self.jet(1, &s), self.jet(2, &s)];
         let (jet, domain) = self.program.jet(l, &coordinates, &mut self.jets);
         l.store(jet.value.low, &mut pieces.value[0][place..]);
         l.store(jet.value.high, &mut pieces.value[1][place..]);
@@ -81,10 +83,11 @@ impl<'a, L: DoubleLanes> Along<'a, L> {
     fn at_lanes(&mut self, t: &[f64], place: usize, values: &mut [[f64; PIECES]; 2]) {
         let l = self.lanes;
         let s = Interval::point(l, l.load(t));
-        let coordinates = std::array::from_fn(
-            #[inline(always)]
-            |axis| self.coordinate(axis, &s),
-        );
+        let coordinates = [
+            self.coordinate(0, &s),
+            self.coordinate(1, &s),
+            self.coordinate(2, &s),
+        ];
         let (value, domain) = self.program.value(l, &coordinates, &mut self.values);
         let value = value.whole_where(domain.broken | domain.void);
         l.store(value.low, &mut values[0][place..]);

@@ -21,6 +21,7 @@ pub const WORK_BOUND: u32 = 2_000;
 /// A field made ready for interval subdivision, as its factors.
 #[derive(Debug, Clone)]
 pub struct EnclosedField {
+    /// Programs and how often each is a factor.
     factors: Vec<(Program, u32)>,
     instructions: Instructions,
 }

@@ -189,6 +189,26 @@ impl Program {
         Compiler::new(tape).run()
     }
 
+    /// Whether the field is defined and continuous everywhere, whatever its operands are.
+    pub fn is_total(&self) -> bool {
+        self.steps.iter().all(|step| match step {
+            Step::Unary(function, _) => !matches!(
+                function,
+                Unary::SquareRoot
+                    | Unary::Logarithm
+                    | Unary::Tangent
+                    | Unary::ArcSine
+                    | Unary::ArcCosine
+            ),
+            Step::Binary(function, ..) => !matches!(
+                function,
+                Binary::Quotient | Binary::ArcTangent2 | Binary::Power
+            ),
+            Step::WholePower(_, n) => *n >= 0,
+            _ => true,
+        })
+    }
+
     /// The number of registers that an evaluation fills.
     pub fn registers(&self) -> usize {
         self.steps.len()
