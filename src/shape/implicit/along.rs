@@ -1,6 +1,6 @@
 //! A field along a line, enclosed.
 
-use super::program::Program;
+use super::interval_program::IntervalProgram;
 use crate::math::instructions::DoubleLanes;
 use crate::math::interval::{Interval, bits, down, up};
 use crate::math::jet::Jet;
@@ -19,7 +19,7 @@ pub struct EnclosedLine {
 /// The field of a program along a line.
 pub struct Along<'a, L: DoubleLanes> {
     lanes: L,
-    program: &'a Program,
+    program: &'a IntervalProgram,
     line: &'a EnclosedLine,
     values: Vec<Interval<L>>,
     jets: Vec<Jet<L>>,
@@ -27,7 +27,7 @@ pub struct Along<'a, L: DoubleLanes> {
 
 impl<'a, L: DoubleLanes> Along<'a, L> {
     /// Makes room for evaluations.
-    pub fn new(lanes: L, program: &'a Program, line: &'a EnclosedLine) -> Self {
+    pub fn new(lanes: L, program: &'a IntervalProgram, line: &'a EnclosedLine) -> Self {
         Self {
             lanes,
             program,

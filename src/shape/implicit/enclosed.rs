@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::along::Along;
 use super::clip::{Clipped, clipped};
-use super::program::Program;
+use super::interval_program::IntervalProgram;
 use super::tape::Tape;
 use crate::math::double_double::DoubleDouble;
 use crate::math::instructions::{DoubleLanes, Instructions, Job};
@@ -22,7 +22,7 @@ pub const WORK_BOUND: u32 = 2_000;
 #[derive(Debug, Clone)]
 pub struct EnclosedField {
     /// Programs and how often each is a factor.
-    factors: Vec<(Program, u32)>,
+    factors: Vec<(IntervalProgram, u32)>,
     instructions: Instructions,
 }
 
@@ -37,7 +37,7 @@ impl EnclosedField {
         let factors = tape.factors().factors;
         let compiled = factors
             .iter()
-            .map(|f| (Program::new(&f.tape), f.multiplicity));
+            .map(|f| (IntervalProgram::new(&f.tape), f.multiplicity));
         Self {
             factors: compiled.collect(),
             instructions,

@@ -7,7 +7,7 @@ pub mod enclosed;
 pub mod expression;
 pub mod named;
 pub mod polynomial;
-pub mod program;
+pub mod interval_program;
 pub mod rational;
 pub mod structure;
 pub mod tape;

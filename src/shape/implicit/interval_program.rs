@@ -28,7 +28,7 @@ enum Step {
 
 /// A field, as steps that each fill one register.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Program {
+pub struct IntervalProgram {
     steps: Vec<Step>,
 }
 
@@ -183,7 +183,7 @@ impl<L: DoubleLanes> Arithmetic<L> for Jet<L> {
     }
 }
 
-impl Program {
+impl IntervalProgram {
     /// The program of a tape.
     pub fn new(tape: &Tape) -> Self {
         Compiler::new(tape).run()
@@ -298,7 +298,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    fn run(mut self) -> Program {
+    fn run(mut self) -> IntervalProgram {
         let operations = self.tape.operations();
         let last = operations.len().wrapping_sub(1);
         for (place, &operation) in operations.iter().enumerate() {
@@ -312,7 +312,7 @@ impl<'a> Compiler<'a> {
         {
             self.steps.push(Step::TimesNumber(register, 1.0));
         }
-        Program { steps: self.steps }
+        IntervalProgram { steps: self.steps }
     }
 
     fn compile(&mut self, place: Place, operation: Operation) {
