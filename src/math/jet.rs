@@ -98,15 +98,6 @@ impl<L: DoubleLanes> Jet<L> {
         }
     }
 
-    /// a value with slope a′ / `divisor`.
-    #[inline(always)]
-    pub fn chained_quotient(self, value: Interval<L>, divisor: Interval<L>) -> Self {
-        Self {
-            value,
-            slope: self.slope / divisor,
-        }
-    }
-
     /// a².
     #[inline(always)]
     pub fn squared(self) -> Self {
@@ -165,25 +156,22 @@ impl<L: DoubleLanes> Jet<L> {
         self.negated().smaller(other.negated()).negated()
     }
 
-    /// Angle of the point (other, self): (x y′ − y x′)/(x² + y²).
+    /// Slope of the angle of the point (other, self): (x y′ − y x′)/(x² + y²).
     #[inline(always)]
-    pub fn arc_tangent_of_quotient(self, other: Self, domain: &mut Domain<L>) -> Self {
+    pub fn slope_of_angle(self, other: Self) -> Interval<L> {
         let turn = other.value * self.slope - self.value * other.slope;
-        Self {
-            value: self.value.arc_tangent_of_quotient(other.value, domain),
-            slope: turn / (other.value.squared() + self.value.squared()),
-        }
+        turn / (other.value.squared() + self.value.squared())
     }
 
-    /// aᵇ with slope aᵇ (b′ ln a + b a′/a).
+    /// Slope of aᵇ from its value and ln a: aᵇ (b′ ln a + b a′/a).
     #[inline(always)]
-    pub fn power(self, exponent: Self, domain: &mut Domain<L>) -> Self {
-        let value = self.value.power(exponent.value, domain);
-        let logarithm = self.value.logarithm(domain);
+    pub fn slope_of_power(
+        self,
+        exponent: Self,
+        power: Interval<L>,
+        logarithm: Interval<L>,
+    ) -> Interval<L> {
         let rate = exponent.slope * logarithm + exponent.value * self.slope / self.value;
-        Self {
-            value,
-            slope: value * rate,
-        }
+        power * rate
     }
 }

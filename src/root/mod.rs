@@ -5,6 +5,8 @@
 //! the function along a stretch of t.
 
 pub mod interval;
+pub mod sign_change;
+pub mod sphere_trace;
 
 /// A zero.
 #[derive(Debug, Clone, Copy, PartialEq)]

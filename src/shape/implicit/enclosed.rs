@@ -10,8 +10,8 @@ use crate::math::double_double::DoubleDouble;
 use crate::math::instructions::{DoubleLanes, Instructions, Job};
 use crate::math::interval::ScalarInterval;
 use crate::math::scalar_lane::One;
-use crate::root::interval::{Search, first_zero};
-use crate::root::{Outcome, Root};
+use crate::root::interval::{self, Search};
+use crate::root::{Outcome, Root, sphere_trace};
 use crate::shape::line::LocalRay;
 
 /// Most evaluations for one ray: well above what separated zeros need (some tens), and about a
@@ -44,6 +44,19 @@ impl EnclosedField {
         }
     }
 
+    /// As [`first_hit`](Self::first_hit), by sphere tracing of the undivided field with a bound of
+    /// its gradient over the box, see [`steepness`].
+    pub fn first_hit_by_spheres(
+        &self,
+        ray: &LocalRay<DoubleDouble>,
+        inside: &[DVec3; 2],
+        limits: [f64; 2],
+        steepness: f64,
+        bound: u32,
+    ) -> Search {
+        self.first_by(ray, inside, limits, Method::Spheres { steepness }, bound)
+    }
+
     /// The first zero on a ray inside a closed box with t_min < t < t_max; t = t_min counts where
     /// `closed`, as far as it can be told. `bound` limits the evaluations.
     pub fn first_hit(
@@ -51,6 +64,17 @@ impl EnclosedField {
         ray: &LocalRay<DoubleDouble>,
         inside: &[DVec3; 2],
         limits: [f64; 2],
+        bound: u32,
+    ) -> Search {
+        self.first_by(ray, inside, limits, Method::Subdivision, bound)
+    }
+
+    fn first_by(
+        &self,
+        ray: &LocalRay<DoubleDouble>,
+        inside: &[DVec3; 2],
+        limits: [f64; 2],
+        method: Method,
         bound: u32,
     ) -> Search {
         let Some(clipped) = clipped(ray, inside, limits) else {
@@ -62,14 +86,23 @@ impl EnclosedField {
         self.instructions.run(First {
             field: self,
             clipped: &clipped,
+            method,
             bound,
         })
     }
 }
 
+/// Which finder.
+#[derive(Debug, Clone, Copy)]
+enum Method {
+    Subdivision,
+    Spheres { steepness: f64 },
+}
+
 struct First<'a> {
     field: &'a EnclosedField,
     clipped: &'a Clipped,
+    method: Method,
     bound: u32,
 }
 
@@ -85,7 +118,14 @@ impl Job for First<'_> {
         let mut evaluations = 0;
         for (program, multiplicity) in &self.field.factors {
             let mut along = Along::new(lanes, program, &clipped.line);
-            let search = first_zero(&mut along, [0.0, to], self.bound);
+            let search = match self.method {
+                Method::Subdivision => interval::first_zero(&mut along, [0.0, to], self.bound),
+                Method::Spheres { steepness } => {
+                    let lipschitz = steepness * speed(clipped);
+                    let lipschitz = lipschitz * (1.0 + 4.0 * f64::EPSILON);
+                    sphere_trace::first_zero(&mut along, [0.0, to], lipschitz, self.bound)
+                }
+            };
             evaluations += search.evaluations;
             match search.outcome {
                 Outcome::Absent => {}
@@ -111,6 +151,16 @@ impl Job for First<'_> {
             evaluations,
         }
     }
+}
+
+/// An upper bound of the direction's length.
+fn speed(clipped: &Clipped) -> f64 {
+    let d = clipped
+        .line
+        .direction
+        .map(|d| ScalarInterval::splat(One, d));
+    let squares = d[0].squared() + d[1].squared() + d[2].squared();
+    squares.square_root().high
 }
 
 fn point(x: f64) -> ScalarInterval {

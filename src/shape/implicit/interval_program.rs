@@ -44,6 +44,96 @@ trait Arithmetic<L: DoubleLanes>: Copy {
     fn sine_cosine(self) -> (Self, Self);
 }
 
+/// Functions of one value, one copy for each instruction set: they are long.
+#[inline(never)]
+fn function_of<L: DoubleLanes>(
+    function: Unary,
+    a: &Interval<L>,
+    domain: &mut Domain<L>,
+) -> Interval<L> {
+    a.lanes.vectorize(
+        #[inline(always)]
+        || match function {
+            Unary::Negative => -*a,
+            Unary::SquareRoot => a.square_root_noted(domain),
+            Unary::Absolute => a.absolute(),
+            Unary::Exponential => a.exponential(),
+            Unary::Logarithm => a.logarithm(domain),
+            Unary::Sine => a.sine_cosine().0,
+            Unary::Cosine => a.sine_cosine().1,
+            Unary::Tangent => a.tangent(domain),
+            Unary::ArcSine => a.arc_sine(domain),
+            Unary::ArcCosine => a.arc_cosine(domain),
+            Unary::ArcTangent => a.arc_tangent(),
+            Unary::HyperbolicSine => a.hyperbolic_sine(),
+            Unary::HyperbolicCosine => a.hyperbolic_cosine(),
+            Unary::HyperbolicTangent => a.hyperbolic_tangent(),
+        },
+    )
+}
+
+/// aᵇ, the angle of the point (b, a): one copy for each instruction set.
+#[inline(never)]
+fn function_of_two<L: DoubleLanes>(
+    function: Binary,
+    [a, b]: [&Interval<L>; 2],
+    domain: &mut Domain<L>,
+) -> Interval<L> {
+    a.lanes.vectorize(
+        #[inline(always)]
+        || match function {
+            Binary::Power => a.power(*b, domain),
+            _ => a.arc_tangent_of_quotient(*b, domain),
+        },
+    )
+}
+
+/// The slope of a function of one value: a′ times or over something.
+#[inline(never)]
+fn slope_of<L: DoubleLanes>(
+    function: Unary,
+    a: &Jet<L>,
+    value: &Interval<L>,
+    domain: &mut Domain<L>,
+) -> Interval<L> {
+    a.value.lanes.vectorize(
+        #[inline(always)]
+        || {
+            let one = Interval::splat(a.value.lanes, [1.0, 1.0]);
+            let (x, y) = (a.value, *value);
+            let factor = match function {
+                Unary::Negative => -one,
+                Unary::Exponential => y,
+                Unary::Sine => function_of(Unary::Cosine, &x, domain),
+                Unary::Cosine => -function_of(Unary::Sine, &x, domain),
+                Unary::Tangent => one + y.squared(),
+                Unary::HyperbolicSine => function_of(Unary::HyperbolicCosine, &x, domain),
+                Unary::HyperbolicCosine => function_of(Unary::HyperbolicSine, &x, domain),
+                Unary::HyperbolicTangent => one - y.squared(),
+                _ => one,
+            };
+            let divisor = match function {
+                Unary::SquareRoot => y.times_number(2.0),
+                Unary::Logarithm => x,
+                Unary::ArcSine => ((one - x) * (one + x)).square_root(),
+                Unary::ArcCosine => -((one - x) * (one + x)).square_root(),
+                Unary::ArcTangent => one + x.squared(),
+                _ => return a.slope * factor,
+            };
+            a.slope / divisor
+        },
+    )
+}
+
+/// A whole power: one copy for each instruction set.
+#[inline(never)]
+fn whole_power_of<L: DoubleLanes>(a: &Jet<L>, n: i32, domain: &mut Domain<L>) -> Jet<L> {
+    a.value.lanes.vectorize(
+        #[inline(always)]
+        || a.whole_power(n, domain),
+    )
+}
+
 impl<L: DoubleLanes> Arithmetic<L> for Interval<L> {
     #[inline(always)]
     fn constant(value: Interval<L>) -> Self {
@@ -51,22 +141,7 @@ impl<L: DoubleLanes> Arithmetic<L> for Interval<L> {
     }
     #[inline(always)]
     fn unary(self, function: Unary, domain: &mut Domain<L>) -> Self {
-        match function {
-            Unary::Negative => -self,
-            Unary::SquareRoot => self.square_root_noted(domain),
-            Unary::Absolute => self.absolute(),
-            Unary::Exponential => self.exponential(),
-            Unary::Logarithm => self.logarithm(domain),
-            Unary::Sine => Interval::sine_cosine_thin(self).0,
-            Unary::Cosine => Interval::sine_cosine_thin(self).1,
-            Unary::Tangent => self.tangent(domain),
-            Unary::ArcSine => self.arc_sine(domain),
-            Unary::ArcCosine => self.arc_cosine(domain),
-            Unary::ArcTangent => self.arc_tangent(),
-            Unary::HyperbolicSine => self.hyperbolic_sine(),
-            Unary::HyperbolicCosine => self.hyperbolic_cosine(),
-            Unary::HyperbolicTangent => self.hyperbolic_tangent(),
-        }
+        function_of(function, &self, domain)
     }
     #[inline(always)]
     fn binary(self, function: Binary, other: Self, domain: &mut Domain<L>) -> Self {
@@ -77,13 +152,14 @@ impl<L: DoubleLanes> Arithmetic<L> for Interval<L> {
             Binary::Quotient => self.quotient_noted(other, domain),
             Binary::Minimum => self.smaller(other),
             Binary::Maximum => self.larger(other),
-            Binary::ArcTangent2 => self.arc_tangent_of_quotient(other, domain),
-            Binary::Power => self.power(other, domain),
+            Binary::ArcTangent2 | Binary::Power => {
+                function_of_two(function, [&self, &other], domain)
+            }
         }
     }
     #[inline(always)]
     fn whole_power(self, n: i32, domain: &mut Domain<L>) -> Self {
-        Jet::constant(self).whole_power(n, domain).value
+        whole_power_of(&Jet::constant(self), n, domain).value
     }
     #[inline(always)]
     fn squared(self) -> Self {
@@ -110,42 +186,12 @@ impl<L: DoubleLanes> Arithmetic<L> for Jet<L> {
     }
     #[inline(always)]
     fn unary(self, function: Unary, domain: &mut Domain<L>) -> Self {
-        let a = self.value;
-        let one = Interval::splat(a.lanes, [1.0, 1.0]);
-        match function {
-            Unary::Negative => self.negated(),
-            Unary::SquareRoot => {
-                let root = a.square_root_noted(domain);
-                self.chained_quotient(root, root.times_number(2.0))
-            }
-            Unary::Absolute => self.absolute(),
-            Unary::Exponential => {
-                let e = a.exponential();
-                self.chained(e, e)
-            }
-            Unary::Logarithm => self.chained_quotient(a.logarithm(domain), a),
-            Unary::Sine => self.sine_cosine().0,
-            Unary::Cosine => self.sine_cosine().1,
-            Unary::Tangent => {
-                let t = a.tangent(domain);
-                self.chained(t, one + t.squared())
-            }
-            Unary::ArcSine => {
-                let root = ((one - a) * (one + a)).square_root();
-                self.chained_quotient(a.arc_sine(domain), root)
-            }
-            Unary::ArcCosine => {
-                let root = ((one - a) * (one + a)).square_root();
-                self.negated().chained_quotient(a.arc_cosine(domain), root)
-            }
-            Unary::ArcTangent => self.chained_quotient(a.arc_tangent(), one + a.squared()),
-            Unary::HyperbolicSine => self.chained(a.hyperbolic_sine(), a.hyperbolic_cosine()),
-            Unary::HyperbolicCosine => self.chained(a.hyperbolic_cosine(), a.hyperbolic_sine()),
-            Unary::HyperbolicTangent => {
-                let t = a.hyperbolic_tangent();
-                self.chained(t, one - t.squared())
-            }
+        if function == Unary::Absolute {
+            return self.absolute();
         }
+        let value = function_of(function, &self.value, domain);
+        let slope = slope_of(function, &self, &value, domain);
+        Jet { value, slope }
     }
     #[inline(always)]
     fn binary(self, function: Binary, other: Self, domain: &mut Domain<L>) -> Self {
@@ -156,13 +202,21 @@ impl<L: DoubleLanes> Arithmetic<L> for Jet<L> {
             Binary::Quotient => self.quotient(other, domain),
             Binary::Minimum => self.smaller(other),
             Binary::Maximum => self.larger(other),
-            Binary::ArcTangent2 => self.arc_tangent_of_quotient(other, domain),
-            Binary::Power => self.power(other, domain),
+            Binary::ArcTangent2 | Binary::Power => {
+                let value = function_of_two(function, [&self.value, &other.value], domain);
+                let slope = if function == Binary::Power {
+                    let logarithm = function_of(Unary::Logarithm, &self.value, domain);
+                    self.slope_of_power(other, value, logarithm)
+                } else {
+                    self.slope_of_angle(other)
+                };
+                Jet { value, slope }
+            }
         }
     }
     #[inline(always)]
     fn whole_power(self, n: i32, domain: &mut Domain<L>) -> Self {
-        Jet::whole_power(self, n, domain)
+        whole_power_of(&self, n, domain)
     }
     #[inline(always)]
     fn squared(self) -> Self {
@@ -214,30 +268,39 @@ impl IntervalProgram {
         self.steps.len()
     }
 
-    /// An enclosure of the field over a box; the whole line for an empty program.
-    #[inline(always)]
+    /// An enclosure of the field over a box; the whole line for an empty program. A stage: one copy
+    /// for each instruction set.
+    #[inline(never)]
     pub fn value<L: DoubleLanes>(
         &self,
         l: L,
         coordinates: &[Interval<L>; 3],
         registers: &mut Vec<Interval<L>>,
     ) -> (Interval<L>, Domain<L>) {
-        self.run(l, coordinates, Interval::whole(l), registers)
+        l.vectorize(
+            #[inline(always)]
+            || self.run(l, coordinates, Interval::whole(l), registers),
+        )
     }
 
-    /// Enclosures of the field and of its slope along the coordinates' own slopes.
-    #[inline(always)]
+    /// Enclosures of the field and of its slope along the coordinates' own slopes. A stage, too.
+    #[inline(never)]
     pub fn jet<L: DoubleLanes>(
         &self,
         l: L,
         coordinates: &[Jet<L>; 3],
         registers: &mut Vec<Jet<L>>,
     ) -> (Jet<L>, Domain<L>) {
-        let anything = Jet {
-            value: Interval::whole(l),
-            slope: Interval::whole(l),
-        };
-        self.run(l, coordinates, anything, registers)
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let anything = Jet {
+                    value: Interval::whole(l),
+                    slope: Interval::whole(l),
+                };
+                self.run(l, coordinates, anything, registers)
+            },
+        )
     }
 
     #[inline(always)]
@@ -256,13 +319,6 @@ impl IntervalProgram {
                 Step::Coordinate(axis) => coordinates[axis],
                 Step::Constant(bounds) => A::constant(Interval::splat(l, bounds)),
                 Step::Unary(function, a) => r[a].unary(function, &mut domain),
-                Step::Binary(Binary::Sum, a, b) => r[a].binary(Binary::Sum, r[b], &mut domain),
-                Step::Binary(Binary::Difference, a, b) => {
-                    r[a].binary(Binary::Difference, r[b], &mut domain)
-                }
-                Step::Binary(Binary::Product, a, b) => {
-                    r[a].binary(Binary::Product, r[b], &mut domain)
-                }
                 Step::Binary(function, a, b) => r[a].binary(function, r[b], &mut domain),
                 Step::WholePower(a, n) => r[a].whole_power(n, &mut domain),
                 Step::Square(a) => r[a].squared(),
