@@ -9,13 +9,53 @@
 use super::interval::{Enclosed, PIECES, Search};
 use super::{Outcome, Root};
 
-/// The first zero in [from, to] for a function whose slopes are at most `lipschitz` in magnitude,
-/// after at most `bound` evaluations.
+/// The first zero in [from, to], after at most `bound` evaluations.
+///
+/// The Lipschitz bound is `lipschitz`, proved by the caller for the whole stretch, or that of the
+/// enclosed slopes over each eighth of it, whichever is less (Galin et al. 2020, "Segment
+/// tracing", for bounds along the ray).
 ///
 /// Found proves that no zero lies before the enclosure and at least one in it. Steps shrink in
 /// proportion to the distance from a zero: a zero without a change of sign is never reached and
 /// ends as Undecided.
 pub fn first_zero<F: Enclosed>(
+    function: &mut F,
+    [from, to]: [f64; 2],
+    lipschitz: f64,
+    bound: u32,
+) -> Search {
+    let width = (to - from) / PIECES as f64;
+    let starts: [f64; PIECES] = std::array::from_fn(|i| from + width * i as f64);
+    let ends: [f64; PIECES] = std::array::from_fn(|i| *starts.get(i + 1).unwrap_or(&to));
+    if !starts.iter().zip(&ends).all(|(a, b)| a < b) {
+        return done(Outcome::Undecided, 0);
+    }
+    let pieces = function.over(&starts, &ends);
+    let mut evaluations = 1;
+    for i in 0..PIECES {
+        let [low, high] = pieces.slope.map(|slope| slope[i]);
+        // A jump has no Lipschitz bound, whatever the slopes beside it.
+        let known = if pieces.broken >> i & 1 == 1 {
+            f64::INFINITY
+        } else {
+            lipschitz.min(high.max(-low)).max(0.0)
+        };
+        let piece = within(
+            function,
+            [starts[i], ends[i]],
+            known,
+            bound - evaluations.min(bound),
+        );
+        evaluations += piece.evaluations;
+        if piece.outcome != Outcome::Absent {
+            return done(piece.outcome, evaluations);
+        }
+    }
+    done(Outcome::Absent, evaluations)
+}
+
+/// The first zero in a piece over which one Lipschitz bound holds.
+fn within<F: Enclosed>(
     function: &mut F,
     [from, to]: [f64; 2],
     lipschitz: f64,
@@ -27,9 +67,9 @@ pub fn first_zero<F: Enclosed>(
         sign: 0,
         opposite: None,
     };
-    let mut step = (to - from) / 64.0;
+    let mut step = to - from;
     let mut evaluations = 0;
-    let usable = lipschitz.is_finite() && lipschitz >= 0.0 && from < to;
+    let usable = lipschitz.is_finite();
     while usable && evaluations < bound {
         let end = march.opposite.unwrap_or(to);
         let before = march.clear;
@@ -40,17 +80,18 @@ pub fn first_zero<F: Enclosed>(
             return done(Outcome::Absent, evaluations);
         }
         let gained = march.clear - before;
-        if let Some(end) = march.opposite
-            && (end - march.clear <= march.clear.abs().max(end.abs()) * 4.0 * f64::EPSILON
-                || gained <= before.abs() * f64::EPSILON && step <= before.abs() * f64::EPSILON)
-        {
-            return done(march.found(end), evaluations);
-        }
-        if gained <= 0.0 && step <= before.abs() * f64::EPSILON {
-            return done(Outcome::Undecided, evaluations);
+        let size = before.abs().max(end.abs());
+        let resolution = 4.0 * f64::EPSILON * size;
+        let stuck = gained <= 0.0 && step <= resolution;
+        match march.opposite {
+            Some(end) if stuck || end - march.clear <= resolution => {
+                return done(march.found(end), evaluations);
+            }
+            None if stuck => return done(Outcome::Undecided, evaluations),
+            _ => {}
         }
         // Points reach twice as far as the last balls did.
-        step = (gained * 2.0).max(step / 64.0);
+        step = (gained * 2.0).max(step / 16.0).min(end - march.clear);
     }
     let outcome = match march.opposite {
         Some(end) if usable && march.sign != 0 => march.found(end),
