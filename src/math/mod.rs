@@ -7,3 +7,4 @@ pub mod functions;
 pub mod lanes;
 pub mod number;
 pub mod vec3;
+pub mod words;

@@ -4,6 +4,9 @@
 //! the third into one of the others. They know neither rays nor surfaces: what they are given is
 //! the function along a stretch of t.
 
+pub mod bernstein;
+pub mod exact;
+
 /// A zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Root {
