@@ -4,6 +4,7 @@ mod cli;
 mod cli_render;
 mod film_files;
 mod fresnel;
+mod implicit_expression;
 mod lane_functions;
 mod lane_shapes;
 mod lanes_support;
