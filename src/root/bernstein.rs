@@ -3,34 +3,32 @@
 //! The number of roots within (0, 1) is at most the number of sign changes of the Bernstein
 //! coefficients, and less by an even number (Descartes' rule; Lane and Riesenfeld 1981). With
 //! coefficients known within a bound, certain signs decide: all the same is *absent*, one change is
-//! one simple root, anything else is split (de Casteljau) near the smallest coefficient, first part
-//! first. A root is refined by Newton's method without bounds (the safeguarded polynomial
-//! solver of Yuksel 2022 is its model), and the result enclosed by certain signs on both sides.
-//! What the bound or the number of splits does not allow is *undecided*.
+//! one simple root, anything else is split (de Casteljau) where the control polygon has its first
+//! minimum below zero, and the first part looked at first. A root is refined by Newton's method within a
+//! bracket (the safeguarded solver of Yuksel 2022 is the model) and then enclosed by certain signs
+//! on both sides. What the bound or the number of splits does not allow is *undecided*.
 
 use crate::math::lanes::{Lanes, Mask, Real};
-use crate::math::words::{Row, Word};
+use crate::math::words::Word;
 
-/// Highest degree.
-pub const LARGEST_DEGREE: usize = 24;
-const ROOM: usize = 2 * (LARGEST_DEGREE + 1);
+/// Degrees that the solver is compiled for; others are raised to the next.
+pub const DEGREES: [usize; 6] = [2, 4, 6, 8, 12, 24];
 
-/// Splits before a lane gives up: four halvings of every piece a polynomial of high degree can
-/// have, and room for the search along a grazing one.
-const MOST_SPLITS: usize = 48;
+/// Splits before a lane gives up. A split at a minimum decides unless the minimum is within the
+/// bound of zero; a polynomial of degree n has n/2 of them, and each is found in a few steps.
+const MOST_SPLITS: usize = 32;
 
 /// Steps of Newton's method, which doubles the digits in each, or halvings where it does not.
-const MOST_STEPS: usize = 12;
+const MOST_STEPS: usize = 24;
 
-/// Polynomials.
-pub struct Problem<'a, L: Lanes> {
-    /// degree + 1 Bernstein coefficients.
-    pub coefficients: &'a [Row],
-    /// Highest power.
-    pub degree: usize,
+/// Polynomials of degree M − 1.
+pub struct Problem<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize> {
+    /// Bernstein coefficients.
+    pub coefficients: [W; M],
     /// Bound of the coefficients' error.
     pub error: L::Real,
-    /// Polynomials whose value at 0 is a root already known, up to `start_error`: it does not count.
+    /// Polynomials whose value at 0 is a root already known, up to `start_error`: it does not
+    /// count.
     pub on_root: L::Mask,
     /// Bound of the value there.
     pub start_error: L::Real,
@@ -63,161 +61,179 @@ struct Signs<L: Lanes> {
     one_change: L::Mask,
     /// Positive up to two uncertain ones at the end: the value and the slope there may be zero.
     touching: L::Mask,
-    /// Where the smallest coefficient stands, as a share of the degree; within (0, 1).
-    smallest: L::Real,
 }
 
-/// Reads the signs. `known` are the lanes whose first coefficient may have any sign.
+/// C(n, i), exactly: it stays below 2²².
+const fn binomial(n: usize, i: usize) -> f64 {
+    let (mut c, mut j) = (1, 0);
+    while j < i {
+        c = c * (n - j) as u64 / (j + 1) as u64;
+        j += 1;
+    }
+    c as f64
+}
+
+/// Reads the signs. In the lanes of `known` the first coefficient may have any.
 #[inline(always)]
-fn signs<L: Lanes<Scalar = f64>, W: Word<L>>(
+fn signs<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
     l: L,
-    rows: &[Row; ROOM],
-    degree: usize,
+    c: &[W; M],
     error: L::Real,
     known: L::Mask,
 ) -> Signs<L> {
-    let first = W::load(l, rows, 0).head();
+    let first = c[0].head();
+    let nobody = l.mask(false);
     let mut plus = first.gt(error) | known;
-    let mut waiting = !plus & !first.lt(-error);
-    let mut minus = l.mask(false);
-    let mut touching = l.mask(false);
-    let mut least = l.real(f64::INFINITY);
-    let mut smallest = l.real(0.5);
-    let share = 1.0 / degree as f64;
-    for i in 1..=degree {
-        let c = W::load(l, rows, i).head();
+    let (mut waiting, mut minus, mut touching) = (nobody, nobody, nobody);
+    for c in &c[1..] {
+        let c = c.head();
         let (positive, negative) = (c.gt(error), c.lt(-error));
         let uncertain = !positive & !negative;
         touching = uncertain & waiting;
         minus = negative & (plus | waiting | minus);
         waiting = uncertain & plus;
         plus = plus & positive;
-        if i < degree {
-            let smaller = c.lt(least);
-            least = l.select(smaller, c, least);
-            smallest = l.select(smaller, l.real(i as f64 * share), smallest);
-        }
     }
     Signs {
         positive: plus,
         one_change: minus,
         touching,
-        smallest,
     }
 }
 
-/// Splits `rest` at `at`: the part before, and the part after in its place.
+/// Where the first minimum of the control polygon that may be below zero is, by the derivative's
+/// polygon; the middle where there is none.
 #[inline(always)]
-fn split<L: Lanes<Scalar = f64>, W: Word<L>>(
+fn minimum<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
     l: L,
-    rest: &[Row; ROOM],
-    degree: usize,
-    at: L::Real,
-    before: &mut [Row; ROOM],
-    after: &mut [Row; ROOM],
-) {
-    after[..W::ROWS * (degree + 1)].copy_from_slice(&rest[..W::ROWS * (degree + 1)]);
-    W::load(l, after, 0).store(l, before, 0);
-    for level in 1..=degree {
-        let mut a = W::load(l, after, 0);
-        for i in 0..=degree - level {
-            let b = W::load(l, after, i + 1);
-            let c = b.minus(a).times_real(at).plus(a);
-            c.store(l, after, i);
-            if i == 0 {
-                c.store(l, before, level);
-            }
-            a = b;
-        }
+    c: &[W; M],
+    error: L::Real,
+) -> L::Real {
+    let zero = l.real(0.0);
+    let mut open = l.mask(true);
+    let (mut place, mut fall, mut turn) = (l.real(0.5), zero, l.real(1.0));
+    let share = 1.0 / (M - 2) as f64;
+    for i in 1..M - 1 {
+        let (before, after) = (c[i].minus(c[i - 1]).head(), c[i + 1].minus(c[i]).head());
+        let lowest = before.lt(zero) & after.ge(zero) & c[i].head().le(error) & open;
+        place = l.select(lowest, l.real((i - 1) as f64 * share), place);
+        fall = l.select(lowest, before, fall);
+        turn = l.select(lowest, before - after, turn);
+        open = open & !lowest;
     }
+    let at = (fall / turn).mul_add(l.real(share), place);
+    // Away from the ends, for progress.
+    at.max(l.real(1.0 / 64.0)).min(l.real(63.0 / 64.0))
 }
 
-/// Copies the lanes of a mask.
+/// Splits at a point: the part before, and the part after.
 #[inline(always)]
-fn take<L: Lanes<Scalar = f64>, W: Word<L>>(
+fn split<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
+    rest: &[W; M],
+    at: L::Real,
+) -> [[W; M]; 2] {
+    let (mut before, mut after) = (*rest, *rest);
+    for level in 1..M {
+        for i in 0..M - level {
+            after[i] = after[i + 1].minus(after[i]).times_real(at).plus(after[i]);
+        }
+        before[level] = after[0];
+    }
+    [before, after]
+}
+
+/// `a` in the lanes of a mask, else `b`.
+#[inline(always)]
+fn merged<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
     l: L,
     mask: L::Mask,
-    from: &[Row; ROOM],
-    to: &mut [Row; ROOM],
-    degree: usize,
+    a: &[W; M],
+    b: &mut [W; M],
 ) {
-    for i in 0..=degree {
-        let (a, b) = (W::load(l, from, i), W::load(l, to, i));
-        W::select(l, mask, a, b).store(l, to, i);
+    for i in 0..M {
+        b[i] = W::select(l, mask, a[i], b[i]);
+    }
+}
+
+/// A part of [0, 1] with one root.
+struct Segment<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize> {
+    coefficients: [W; M],
+    from: L::Real,
+    width: L::Real,
+}
+
+impl<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize> Segment<L, W, M> {
+    #[inline(always)]
+    fn take(&mut self, l: L, mask: L::Mask, coefficients: &[W; M], from: L::Real, width: L::Real) {
+        merged(l, mask, coefficients, &mut self.coefficients);
+        self.from = l.select(mask, from, self.from);
+        self.width = l.select(mask, width, self.width);
     }
 }
 
 /// The first roots in (0, 1).
 #[inline(always)]
-pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>>(
+pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
     l: L,
-    problem: &Problem<'_, L>,
-    binomials: &[f64],
+    problem: &Problem<L, W, M>,
 ) -> Roots<L> {
-    let degree = problem.degree;
     let (zero, one) = (l.real(0.0), l.real(1.0));
     let nobody = l.mask(false);
-    let mut rest = [Row::default(); ROOM];
+    let mut rest = problem.coefficients;
     // Turned so that they are positive at first; a start on a root has the sign that follows it.
-    let start = W::load(l, problem.coefficients, 0).head();
-    let near_zero = !start.abs().gt(problem.start_error);
-    let mut known = problem.on_root & near_zero;
-    let second = W::load(l, problem.coefficients, 1).head();
-    let negative = l.select(known, second, start).lt(zero);
+    let start = rest[0].head();
+    let mut known = problem.on_root & !start.abs().gt(problem.start_error);
+    let negative = l.select(known, rest[1].head(), start).lt(zero);
     let sign = l.select(negative, -one, one);
     let mut largest = zero;
-    for i in 0..=degree {
-        let c = W::load(l, problem.coefficients, i);
-        c.times_real(sign).store(l, &mut rest, i);
+    for c in &mut rest {
+        *c = c.times_real(sign);
         largest = largest.max(c.head().abs());
     }
     // With the largest magnitude 1, a level of a split rounds a difference and a product below 2
     // and a sum below 1: 7U with the sum of magnitudes that double-double sums go by. One split's
     // worth pays for `value`, too.
-    let per_split = largest * l.real(8.0 * degree as f64 * W::UNIT);
+    let per_split = largest * l.real(8.0 * (M - 1) as f64 * W::UNIT);
     let mut error = problem.error + per_split;
-
-    let mut segment = rest;
-    let (mut segment_from, mut segment_width) = (zero, one);
-    let mut from = zero;
-    let mut at = one;
-    let (mut before, mut after) = ([Row::default(); ROOM], [Row::default(); ROOM]);
-    let (mut found, mut absent, mut given_up) = (nobody, nobody, nobody);
-    let mut fresh = problem.active;
+    let mut segment = Segment {
+        coefficients: rest,
+        from: zero,
+        width: one,
+    };
+    let (mut from, mut at) = (zero, one);
+    // A start whose sign is unknown stays so in every first part.
+    let (mut found, mut absent, mut given_up) = (nobody, nobody, !known & !start.abs().gt(error));
+    let mut fresh = problem.active & !given_up;
     for _ in 0..MOST_SPLITS {
-        let s = signs::<L, W>(l, &rest, degree, error, known);
+        let s = signs(l, &rest, error, known);
         let alone = fresh & s.one_change;
         if alone.any() {
-            take::<L, W>(l, alone, &rest, &mut segment, degree);
-            segment_from = l.select(alone, from, segment_from);
-            segment_width = l.select(alone, one - from, segment_width);
+            segment.take(l, alone, &rest, from, one - from);
             found = found | alone;
         }
         absent = absent | (fresh & s.positive);
         given_up = given_up | (fresh & s.touching);
-        at = l.select(fresh, s.smallest, at);
         let open = problem.active & !found & !absent & !given_up;
         if !open.any() {
             break;
         }
-        split::<L, W>(l, &rest, degree, at, &mut before, &mut after);
+        at = l.select(fresh, minimum(l, &rest, error), at);
+        let [before, after] = split(&rest, at);
         error = error + per_split;
-        let s = signs::<L, W>(l, &before, degree, error, known);
+        let s = signs(l, &before, error, known);
         let alone = open & s.one_change;
         if alone.any() {
-            take::<L, W>(l, alone, &before, &mut segment, degree);
-            segment_from = l.select(alone, from, segment_from);
-            segment_width = l.select(alone, at * (one - from), segment_width);
+            segment.take(l, alone, &before, from, at * (one - from));
             found = found | alone;
         }
         given_up = given_up | (open & s.touching);
         fresh = open & s.positive;
         if fresh.any() {
-            take::<L, W>(l, fresh, &after, &mut rest, degree);
+            merged(l, fresh, &after, &mut rest);
             from = l.select(fresh, at.mul_add(one - from, from), from);
             known = known & !fresh;
         }
-        at = l.select(open & !fresh, at * s.smallest, at);
+        at = at * minimum(l, &before, error);
     }
     let mut roots = Roots {
         found,
@@ -228,79 +244,84 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>>(
         high: one,
     };
     if found.any() {
-        let [root, low, high] = refined::<L, W>(l, &segment, degree, error, found, binomials);
+        let [root, low, high] = refined(l, &segment.coefficients, error, found);
         // Two roundings a split in `from`, and three here, of numbers below 1.
         let slack = l.real((2 * MOST_SPLITS + 3) as f64 * f64::EPSILON / 2.0);
-        roots.root = root.mul_add(segment_width, segment_from);
-        roots.low = low.mul_add(segment_width, segment_from) - slack;
-        roots.high = high.mul_add(segment_width, segment_from) + slack;
+        roots.root = root.mul_add(segment.width, segment.from);
+        roots.low = low.mul_add(segment.width, segment.from) - slack;
+        roots.high = high.mul_add(segment.width, segment.from) + slack;
     }
     roots
 }
 
-/// The value at x in [0, 1], Bernstein form: Σ C(n, i) cᵢ xⁱ (1 − x)ⁿ⁻ⁱ by Horner's rule, with
-/// 1 − x rounded once: the error is below (5n + 3)U times the largest coefficient.
+/// The value at x in [0, 1] of a form with coefficients C(n, i) cᵢ: Σ C(n, i) cᵢ xⁱ (1 − x)ⁿ⁻ⁱ by
+/// Horner's rule, with 1 − x rounded once. The error is below (5n + 3)U times the largest cᵢ.
 #[inline(always)]
-fn value<L: Lanes<Scalar = f64>, W: Word<L>>(
+fn value<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
     l: L,
-    scaled: &[Row; ROOM],
-    degree: usize,
+    scaled: &[W; M],
     x: L::Real,
 ) -> L::Real {
     let x = W::real(l, x);
     let y = W::real(l, l.real(1.0)).minus(x);
     let mut power = x;
-    let mut sum = W::load(l, scaled, 0);
-    for i in 1..=degree {
-        let term = W::load(l, scaled, i).times(power);
-        sum = sum.fused(y, term);
-        if i < degree {
+    let mut sum = scaled[0];
+    for (i, c) in scaled.iter().enumerate().skip(1) {
+        sum = sum.fused(y, c.times(power));
+        if i < M - 1 {
             power = power.times(x);
         }
     }
     sum.head()
 }
 
+/// Where the control polygon crosses zero.
+#[inline(always)]
+fn crossing<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(l: L, c: &[W; M]) -> L::Real {
+    let zero = l.real(0.0);
+    let (mut place, mut above, mut fall) = (zero, zero, l.real(1.0));
+    for i in 1..M {
+        let (before, after) = (c[i - 1].head(), c[i].head());
+        let crosses = before.gt(zero) & !after.gt(zero);
+        place = l.select(crosses, l.real((i - 1) as f64), place);
+        above = l.select(crosses, before, above);
+        fall = l.select(crosses, before - after, fall);
+    }
+    (above / fall + place) * l.real(1.0 / (M - 1) as f64)
+}
+
 /// The only root of polynomials that go from positive to negative, with its enclosure.
 #[inline(always)]
-fn refined<L: Lanes<Scalar = f64>, W: Word<L>>(
+fn refined<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
     l: L,
-    segment: &[Row; ROOM],
-    degree: usize,
+    segment: &[W; M],
     error: L::Real,
     active: L::Mask,
-    binomials: &[f64],
 ) -> [L::Real; 3] {
     let (zero, one, half) = (l.real(0.0), l.real(1.0), l.real(0.5));
     // Powers of x by differences: good to a few digits less than the coefficients.
-    let mut powers = [Row::default(); LARGEST_DEGREE + 1];
-    let mut scaled = [Row::default(); ROOM];
-    for i in 0..=degree {
-        let c = W::load(l, segment, i);
-        l.store(c.head(), &mut powers[i].0);
-        c.times_real(l.real(binomials[i])).store(l, &mut scaled, i);
+    let mut powers = [zero; M];
+    let mut scaled = *segment;
+    for i in 0..M {
+        powers[i] = segment[i].head();
+        scaled[i] = segment[i].times_real(l.real(binomial(M - 1, i)));
     }
-    for level in 1..=degree {
-        for i in (level..=degree).rev() {
-            let difference = l.load(&powers[i].0) - l.load(&powers[i - 1].0);
-            l.store(difference, &mut powers[i].0);
+    for level in 1..M {
+        for i in (level..M).rev() {
+            powers[i] = powers[i] - powers[i - 1];
         }
     }
-    for i in 1..degree {
-        let c = l.load(&powers[i].0) * l.real(binomials[i]);
-        l.store(c, &mut powers[i].0);
+    for (i, c) in powers.iter_mut().enumerate() {
+        *c = *c * l.real(binomial(M - 1, i));
     }
     let (mut low, mut high) = (zero, one);
-    let first = W::load(l, segment, 0).head();
-    let last = W::load(l, segment, degree).head();
-    let mut x = first / (first - last);
-    let top = l.load(&powers[degree].0);
+    let mut x = crossing(l, segment);
     let mut slope = -one;
     for _ in 0..MOST_STEPS {
-        let (mut f, mut d) = (top, zero);
-        for i in (0..degree).rev() {
+        let (mut f, mut d) = (powers[M - 1], zero);
+        for c in powers[..M - 1].iter().rev() {
             d = d.mul_add(x, f);
-            f = f.mul_add(x, l.load(&powers[i].0));
+            f = f.mul_add(x, *c);
         }
         let ahead = f.gt(zero);
         low = l.select(ahead, x, low);
@@ -311,42 +332,43 @@ fn refined<L: Lanes<Scalar = f64>, W: Word<L>>(
         let next = l.select(inside, next, (low + high) * half);
         let step = (next - x).abs();
         x = next;
-        if !(active & step.gt(l.real(4.0 * f64::EPSILON))).any() {
+        // The next step is of the order of the square of this one.
+        if !(active & step.gt(l.real(1.0 / (1u64 << 26) as f64))).any() {
             break;
         }
     }
-    enclosed::<L, W>(l, &scaled, degree, error, active, x, slope)
+    enclosed(l, &scaled, error, active, x, slope)
 }
 
 /// Improves the estimate by accurate values and encloses the root by certain signs.
 #[inline(always)]
-fn enclosed<L: Lanes<Scalar = f64>, W: Word<L>>(
+fn enclosed<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
     l: L,
-    scaled: &[Row; ROOM],
-    degree: usize,
+    scaled: &[W; M],
     error: L::Real,
     active: L::Mask,
     estimate: L::Real,
     slope: L::Real,
 ) -> [L::Real; 3] {
     let (zero, one) = (l.real(0.0), l.real(1.0));
-    let within = |x: L::Real| x.max(zero).min(one);
-    let slope = -(slope.abs().max(l.real(f64::MIN_POSITIVE)));
-    let x = within(estimate - value::<L, W>(l, scaled, degree, estimate) / slope);
-    let mut width = (error / -slope).mul_add(l.real(2.0), l.real(2.0 * f64::EPSILON));
+    let steepness = slope.abs().max(l.real(f64::MIN_POSITIVE));
+    let x = (estimate + value(l, scaled, estimate) / steepness)
+        .max(zero)
+        .min(one);
+    let mut width = (error / steepness).mul_add(l.real(1.5), l.real(2.0 * f64::EPSILON));
     let (mut low, mut high) = (zero, one);
     let mut open = active;
-    for _ in 0..6 {
-        let (a, b) = (within(x - width), within(x + width));
-        let before = value::<L, W>(l, scaled, degree, a).gt(error);
-        let after = value::<L, W>(l, scaled, degree, b).lt(-error);
+    for _ in 0..12 {
+        let (a, b) = ((x - width).max(zero), (x + width).min(one));
+        let before = value(l, scaled, a).gt(error);
+        let after = value(l, scaled, b).lt(-error);
         low = l.select(before, a.max(low), low);
         high = l.select(after, b.min(high), high);
         open = open & !(before & after);
         if !open.any() {
             break;
         }
-        width = width * l.real(16.0);
+        width = width * l.real(8.0);
     }
     [x.max(low).min(high), low, high]
 }

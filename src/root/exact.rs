@@ -91,7 +91,7 @@ pub struct ExactRoot {
     pub t: f64,
     /// f64 on both sides, as close as they get; once the same where the root is an f64.
     pub enclosure: [f64; 2],
-    /// How many times it is a root; `None` where the polynomial is zero.
+    /// How many times it is a root, where that is known.
     pub multiplicity: Option<u32>,
 }
 
@@ -238,7 +238,7 @@ impl Chain {
     }
 }
 
-/// The first root on the stretch; where the polynomial is zero, the stretch's beginning.
+/// The first root on the stretch. The zero polynomial has none that could be told from the others.
 pub fn first_root(coefficients: &[BigInt], stretch: &Stretch) -> Option<ExactRoot> {
     let order = stretch.low.compare(&stretch.high);
     let point = order == Ordering::Equal && stretch.low_counts && stretch.high_counts;
@@ -246,12 +246,6 @@ pub fn first_root(coefficients: &[BigInt], stretch: &Stretch) -> Option<ExactRoo
         return None;
     }
     let whole = Polynomial::new(coefficients.to_vec()).primitive();
-    if whole.is_zero() {
-        return Some(ExactRoot {
-            multiplicity: None,
-            ..exactly(&stretch.low, 0)
-        });
-    }
     if whole.degree() == 0 {
         return None;
     }
@@ -367,7 +361,11 @@ fn narrowed(
             1 => secant - 4.0 * (b - secant).max(f64::EPSILON * b.abs()),
             _ => middle,
         };
-        let guess = if guess > a && guess < b { guess } else { middle };
+        let guess = if guess > a && guess < b {
+            guess
+        } else {
+            middle
+        };
         let Some((point, x)) = between(&low, &high, guess, b - a <= close) else {
             break;
         };

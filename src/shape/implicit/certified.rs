@@ -9,6 +9,7 @@
 
 mod exact;
 mod kernel;
+mod outer;
 mod place;
 
 use fearless_simd::Level;

@@ -19,6 +19,7 @@ use num_traits::{One, Zero};
 
 use super::tape::{Binary, Operation, Tape, Unary};
 use crate::math::number::Number;
+use crate::root::bernstein::DEGREES;
 
 /// Largest degree along a line; beyond, fields are treated like any other expression.
 pub const LARGEST_DEGREE: usize = 24;
@@ -90,7 +91,10 @@ impl Program {
             let value = algebra.value(tape, &values, operation)?;
             values.push(value);
         }
-        Emission::new(&algebra).program(values.last()?)
+        let field = values.last()?;
+        let degree = algebra.degree(field);
+        let raised = *DEGREES.iter().find(|d| **d >= degree)?;
+        Emission::new(&algebra).program(field, raised)
     }
 
     /// The operations.
@@ -138,6 +142,9 @@ impl Program {
                         for (i, s) in sum.iter_mut().enumerate() {
                             *s += &factor.exact * &rows[form.at + i];
                         }
+                    }
+                    while sum.len() <= to.degree {
+                        sum = elevated(&sum, one);
                     }
                     rows[to.at..=to.at + to.degree].clone_from_slice(&sum);
                 }
@@ -337,8 +344,9 @@ impl<'a> Emission<'a> {
         }
     }
 
-    fn program(mut self, field: &Linear) -> Option<Program> {
-        let result = self.combination(field).form;
+    /// The field is raised to a degree that the solver is compiled for.
+    fn program(mut self, field: &Linear, degree: usize) -> Option<Program> {
+        let result = self.combination(field, degree).form;
         (self.rows <= MOST_ROWS).then_some(Program {
             steps: self.steps,
             result,
@@ -389,12 +397,13 @@ impl<'a> Emission<'a> {
     fn linear(&mut self, linear: &Linear) -> Placed {
         match linear.single() {
             Some((atom, factor)) if factor.is_one() => self.atom(atom),
-            _ => self.combination(linear),
+            _ => self.combination(linear, 0),
         }
     }
 
-    fn combination(&mut self, linear: &Linear) -> Placed {
-        if let Some((_, placed)) = self.combinations.iter().find(|(l, _)| l == linear) {
+    fn combination(&mut self, linear: &Linear, least: usize) -> Placed {
+        let known = self.combinations.iter().find(|(l, _)| l == linear);
+        if let Some((_, placed)) = known.filter(|(_, p)| p.form.degree >= least) {
             return placed.clone();
         }
         let mut operands: Vec<(Placed, &BigRational)> = linear
@@ -416,7 +425,7 @@ impl<'a> Emission<'a> {
             .map(|(placed, value)| (factor(value, &placed.denominator), placed.form))
             .collect();
         let constant = factor(&linear.constant, &BigInt::one());
-        let degree = terms.last().map_or(0, |(_, form)| form.degree);
+        let degree = terms.last().map_or(0, |(_, form)| form.degree).max(least);
         let to = self.room(degree);
         self.steps.push(Step::Combination {
             terms,
@@ -443,7 +452,7 @@ fn parts(value: &BigRational) -> [f64; 2] {
 }
 
 /// The nearest f64 of n / d, or one of its neighbours.
-fn nearest(value: &BigRational) -> f64 {
+pub(super) fn nearest(value: &BigRational) -> f64 {
     use crate::math::exact::Exact;
     let (numerator, denominator) = (value.numer().clone(), value.denom().clone());
     Exact::integer(numerator)

@@ -7,7 +7,6 @@ use num_traits::{One, Signed, Zero};
 
 use super::Certified;
 use crate::math::exact::Exact;
-use crate::math::number::Number;
 use crate::root::exact::{ExactRoot, Point, Stretch, first_root};
 use crate::shape::Ray;
 use crate::shape::ladder::ScaledRay;
@@ -32,7 +31,11 @@ impl IntegerRay {
     /// The common power of two is of no concern. t is in units of the scaled direction.
     fn new(placed: &Certified, ray: &ScaledRay) -> Self {
         let line = placed.ladder.exact.local(ray);
-        let all = line.origin.iter().chain(&line.direction).chain([&line.scale]);
+        let all = line
+            .origin
+            .iter()
+            .chain(&line.direction)
+            .chain([&line.scale]);
         let exponents = all.filter(|x| x.magnitude().is_some()).map(|x| x.parts().1);
         let least = exponents.min().unwrap_or(0);
         let integer = |x: &Exact| {
@@ -111,8 +114,7 @@ pub(super) fn first_hit(
     let unit = crate::math::number::power_of_two(scaled.exponent());
     let line = IntegerRay::new(placed, &scaled);
     let stretch = line.stretch(placed, limits.map(|t| t * unit))?;
-    let coordinates =
-        [0, 1, 2].map(|i| [line.origin[i].clone(), line.direction[i].clone()]);
+    let coordinates = [0, 1, 2].map(|i| [line.origin[i].clone(), line.direction[i].clone()]);
     let one = [line.scale.clone(), BigInt::zero()];
     let mut first: Option<ExactRoot> = None;
     for factor in &placed.factors {

@@ -5,7 +5,7 @@ use super::place::{Certified, FactorField, Inverse};
 use super::{Answers, DoubleLanes, Packet, WIDTH};
 use crate::math::lanes::{Mask, Real};
 use crate::math::words::{Row, Word};
-use crate::root::bernstein::{Problem, first_roots};
+use crate::root::bernstein::{Problem, Roots, first_roots};
 
 /// A clipped packet.
 struct Clipped<L: DoubleLanes> {
@@ -64,8 +64,14 @@ impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
         let o = [l.load(&o[0]), l.load(&o[1]), l.load(&o[2])];
         let d = [l.load(&d[0]), l.load(&d[1]), l.load(&d[2])];
         let mut local = Self {
-            origin: o.map(#[inline(always)] |x| W::real(l, x)),
-            direction: d.map(#[inline(always)] |x| W::real(l, x)),
+            origin: o.map(
+                #[inline(always)]
+                |x| W::real(l, x),
+            ),
+            direction: d.map(
+                #[inline(always)]
+                |x| W::real(l, x),
+            ),
             extent: o[0].abs().max(o[1].abs()).max(o[2].abs()),
             length: d[0].abs().max(d[1].abs()).max(d[2].abs()),
         };
@@ -89,15 +95,23 @@ impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
     fn clip(&self, l: L, placed: &Certified, inverse: &Inverse, packet: &Packet) -> Clipped<L> {
         let zero = l.real(0.0);
         let tiny = l.real(f64::MIN_POSITIVE * 1e16);
-        let o = self.origin.map(#[inline(always)] |x| x.head());
-        let d = self.direction.map(#[inline(always)] |x| x.head());
+        let o = self.origin.map(
+            #[inline(always)]
+            |x| x.head(),
+        );
+        let d = self.direction.map(
+            #[inline(always)]
+            |x| x.head(),
+        );
         let faces = placed.outer.lower.iter().chain(&placed.outer.upper);
         let face = l.real(faces.fold(0.0, |a: f64, b| a.max(b.abs())));
         let reach = o[0].abs().max(o[1].abs()).max(o[2].abs()) + face;
         let fastest = d[0].abs().max(d[1].abs()).max(d[2].abs());
         // No point of the box is farther along the line; twice as much pays for the margin.
         let farthest = (reach + reach) / fastest;
-        let moved = self.extent.mul_add(l.real(inverse.origin_error), l.real(inverse.offset_error));
+        let moved = self
+            .extent
+            .mul_add(l.real(inverse.origin_error), l.real(inverse.offset_error));
         let turned = self.length * l.real(inverse.direction_error);
         let map_error = farthest.mul_add(turned, moved);
         // A face is met at a t with three roundings: that moves the point by 3u (reach + margin).
@@ -170,8 +184,11 @@ fn expand<L: DoubleLanes, W: Word<L>>(
                     for k in 0..=to.degree {
                         let first = k.saturating_sub(b.degree);
                         let last = a.degree.min(k);
-                        let mut sum = W::load(l, known, a.at + first)
-                            .times(W::load(l, known, b.at + k - first));
+                        let mut sum = W::load(l, known, a.at + first).times(W::load(
+                            l,
+                            known,
+                            b.at + k - first,
+                        ));
                         for i in first + 1..=last {
                             let x = W::load(l, known, a.at + i);
                             sum = x.fused(W::load(l, known, b.at + k - i), sum);
@@ -190,14 +207,8 @@ fn expand<L: DoubleLanes, W: Word<L>>(
                 let mut degree = 0;
                 for (factor, form) in terms {
                     while degree < form.degree {
-                        let mut carried = W::load(l, result, 0);
-                        for i in 1..=degree {
-                            let next = W::load(l, result, i);
-                            carried.plus(next).store(l, result, i);
-                            carried = next;
-                        }
+                        elevate::<L, W>(l, result, degree);
                         degree += 1;
-                        carried.store(l, result, degree);
                     }
                     let factor = W::constant(l, factor.parts);
                     for i in 0..=degree {
@@ -207,6 +218,10 @@ fn expand<L: DoubleLanes, W: Word<L>>(
                             .store(l, result, i);
                     }
                 }
+                while degree < to.degree {
+                    elevate::<L, W>(l, result, degree);
+                    degree += 1;
+                }
             }
         }
     }
@@ -215,6 +230,18 @@ fn expand<L: DoubleLanes, W: Word<L>>(
         let c = W::load(l, rows, result.at + i).times(W::constant(l, reciprocal));
         c.store(l, rows, result.at + i);
     }
+}
+
+/// Multiplies a form by (1 − s) + s.
+#[inline(always)]
+fn elevate<L: DoubleLanes, W: Word<L>>(l: L, form: &mut [Row], degree: usize) {
+    let mut carried = W::load(l, form, 0);
+    for i in 1..=degree {
+        let next = W::load(l, form, i);
+        carried.plus(next).store(l, form, i);
+        carried = next;
+    }
+    carried.store(l, form, degree + 1);
 }
 
 /// The square of a form: products of unequal coefficients count twice.
@@ -246,6 +273,41 @@ fn square<L: DoubleLanes, W: Word<L>>(
             sum = x.fused(x, sum);
         }
         sum.store(l, result, k);
+    }
+}
+
+/// What is asked of a factor's coefficients.
+struct Question<L: DoubleLanes> {
+    error: L::Real,
+    on_root: L::Mask,
+    active: L::Mask,
+}
+
+impl<L: DoubleLanes> Question<L> {
+    /// In a function of its own for each degree, so that its numbers can stay in registers.
+    #[inline(never)]
+    fn ask<W: Word<L>, const M: usize>(&self, l: L, rows: &[Row]) -> Roots<L> {
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let mut coefficients = [W::constant(l, [0.0; 2]); M];
+                for (i, c) in coefficients.iter_mut().enumerate() {
+                    *c = W::load(l, rows, i);
+                }
+                first_roots(
+                    l,
+                    &Problem {
+                        coefficients,
+                        error: self.error,
+                        on_root: self.on_root,
+                        // The start is a rounded point of a surface that was found to a few units
+                        // in the last place of its coordinates.
+                        start_error: self.error + self.error,
+                        active: self.active,
+                    },
+                )
+            },
+        )
     }
 }
 
@@ -288,20 +350,23 @@ impl<L: DoubleLanes> Combined<L> {
     ) {
         let result = factor.program.result();
         let bounds = &factor.bounds[W::ROWS - 1];
-        let error = clipped.shift.mul_add(l.real(bounds.change), l.real(bounds.error));
-        let leaving = l.mask_from_bits(packet.leaving);
-        // The start is a rounded point of a surface that was found to a few units in the last
-        // place of its coordinates.
-        let start_error = error + error;
-        let problem = Problem {
-            coefficients: &rows[W::ROWS * result.at..W::ROWS * (result.at + result.degree + 1)],
-            degree: result.degree,
+        let error = clipped
+            .shift
+            .mul_add(l.real(bounds.change), l.real(bounds.error));
+        let question = Question {
             error,
-            on_root: leaving,
-            start_error,
+            on_root: l.mask_from_bits(packet.leaving),
             active: self.open & !self.undecided,
         };
-        let roots = first_roots::<L, W>(l, &problem, &factor.binomials);
+        let rows = &rows[W::ROWS * result.at..];
+        let roots = match result.degree {
+            2 => question.ask::<W, 3>(l, rows),
+            4 => question.ask::<W, 5>(l, rows),
+            6 => question.ask::<W, 7>(l, rows),
+            8 => question.ask::<W, 9>(l, rows),
+            12 => question.ask::<W, 13>(l, rows),
+            _ => question.ask::<W, 25>(l, rows),
+        };
         let width = clipped.far - clipped.near;
         let largest = clipped.near.abs().max(clipped.far.abs());
         let slack = largest * l.real(2.0 * f64::EPSILON);
@@ -319,7 +384,7 @@ impl<L: DoubleLanes> Combined<L> {
         self.low = l.select(first, low, self.low);
         self.high = l.select(roots.found, high.min(self.high), self.high);
         self.found = self.found | roots.found;
-        self.undecided = self.undecided | (problem.active & !roots.found & !roots.absent);
+        self.undecided = self.undecided | (question.active & !roots.found & !roots.absent);
     }
 
     #[inline(always)]
@@ -340,9 +405,7 @@ impl<L: DoubleLanes> Combined<L> {
                 let (a, b) = (d.mul_add(low, o), d.mul_add(high, o));
                 let slack = clipped.shift + l.real(placed.margin / 1024.0);
                 let (least, most) = (a.min(b) - slack, a.max(b) + slack);
-                sure = sure
-                    & least.gt(l.real(cut.lower[i]))
-                    & most.lt(l.real(cut.upper[i]));
+                sure = sure & least.gt(l.real(cut.lower[i])) & most.lt(l.real(cut.upper[i]));
             }
         }
         let absent = self.absent | (self.open & !self.found & !self.undecided);

@@ -4,6 +4,8 @@ use glam::DVec3;
 
 use super::super::program::Program;
 use super::super::program::bounds::{FieldBounds, PLAIN, Rounding, binomial, bounds};
+use super::super::tape::Tape;
+use super::outer::outer_box;
 use crate::math::affine::Affine;
 use crate::math::double_double::DoubleDouble;
 use crate::math::exact::Exact;
@@ -33,9 +35,7 @@ pub(super) struct FactorField {
     pub program: Program,
     /// Its power in the field.
     pub power: u32,
-    /// C(n, i).
-    pub binomials: Vec<f64>,
-    /// Their reciprocals, each as a sum of two f64.
+    /// 1 / C(n, i), each as a sum of two f64.
     pub reciprocals: Vec<[f64; 2]>,
     /// By tier.
     pub bounds: [FieldBounds; 2],
@@ -75,12 +75,34 @@ pub struct Certified {
 const MARGIN: f64 = 1.0 / 1024.0;
 
 impl Certified {
-    /// Places the surface: factors of the field with their powers, clip box, and a box that holds
-    /// all of the surface within it.
+    /// Places the zeros of a field within a clip box; `None` where the field is no polynomial, or
+    /// one that is too large.
     ///
     /// # Errors
     /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
     pub fn new(
+        field: &Tape,
+        clip: [DVec3; 2],
+        to_world: &Affine,
+    ) -> Result<Option<Self>, SingularMatrix> {
+        let factors = field.factors().factors;
+        let programs = factors
+            .iter()
+            .map(|f| Some((Program::new(&f.tape)?, f.multiplicity)));
+        let Some(programs) = programs.collect::<Option<Vec<_>>>() else {
+            return Ok(None);
+        };
+        let tapes: Vec<Tape> = factors.into_iter().map(|f| f.tape).collect();
+        let whole = outer_box(&tapes, clip);
+        let programs = if whole.is_some() {
+            programs
+        } else {
+            Vec::new()
+        };
+        Self::place(programs, clip, whole.unwrap_or(clip), to_world).map(Some)
+    }
+
+    fn place(
         factors: Vec<(Program, u32)>,
         clip: [DVec3; 2],
         outer: [DVec3; 2],
@@ -93,11 +115,15 @@ impl Certified {
         let (clip, outer) = (limits(clip), limits(outer));
         let half = (0..3).map(|i| (outer.upper[i] - outer.lower[i]) / 2.0);
         let margin = MARGIN * half.fold(0.0, f64::max);
-        let free = |face: f64, at: f64| (at - face).abs() > 2.0 * margin;
+        let free = |face: f64, at: f64| (at - face).abs() > margin;
         let cut = Limits {
             lower: [0, 1, 2].map(|i| {
                 let free = free(clip.lower[i], outer.lower[i]);
-                if free { f64::NEG_INFINITY } else { clip.lower[i] }
+                if free {
+                    f64::NEG_INFINITY
+                } else {
+                    clip.lower[i]
+                }
             }),
             upper: [0, 1, 2].map(|i| {
                 let free = free(clip.upper[i], outer.upper[i]);
@@ -139,7 +165,6 @@ impl FactorField {
         };
         Self {
             reciprocals: binomials.iter().map(reciprocal).collect(),
-            binomials,
             bounds: [PLAIN, PAIR].map(|rounding| bounds(&program, reach, rounding)),
             program,
             power,
@@ -185,12 +210,7 @@ impl Inverse {
         Self::new(ladder, 8.0 * PAIR.unit, DoubleDouble::error, 2)
     }
 
-    fn new(
-        ladder: &Ladder,
-        unit: f64,
-        own: impl Fn(&DoubleDouble) -> f64,
-        parts: usize,
-    ) -> Self {
+    fn new(ladder: &Ladder, unit: f64, own: impl Fn(&DoubleDouble) -> f64, parts: usize) -> Self {
         let entries = Self::entries(ladder);
         let rows = entries.each_ref().map(|row| {
             row.each_ref().map(|entry| {
@@ -207,9 +227,13 @@ impl Inverse {
             };
         }
         let bound = |entries: &[DoubleDouble]| -> f64 {
-            entries.iter().map(|e| unit * e.to_f64().abs() + own(e)).sum()
+            entries
+                .iter()
+                .map(|e| unit * e.to_f64().abs() + own(e))
+                .sum()
         };
-        let largest = |f: &dyn Fn(&[DoubleDouble; 4]) -> f64| entries.iter().map(f).fold(0.0, f64::max);
+        let largest =
+            |f: &dyn Fn(&[DoubleDouble; 4]) -> f64| entries.iter().map(f).fold(0.0, f64::max);
         let direction_error = largest(&|row| bound(&row[..3]));
         Self {
             rows,

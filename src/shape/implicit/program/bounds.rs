@@ -97,6 +97,9 @@ pub fn bounds(program: &Program, reach: [f64; 3], rounding: Rounding) -> FieldBo
                         *s = s.plus(term).rounded(rounding.steps, rounding);
                     }
                 }
+                while sum.len() <= to.degree {
+                    sum = elevated(&sum, rounding);
+                }
                 rows[to.at..=to.at + to.degree].copy_from_slice(&sum);
             }
         }
@@ -143,7 +146,11 @@ impl Bound {
     fn of(factor: &Factor, rounding: Rounding) -> Self {
         let [high, low] = factor.parts;
         // Each part is within a unit in the last place of what it stands for.
-        let left = if rounding.parts == 1 { low } else { low * f64::EPSILON };
+        let left = if rounding.parts == 1 {
+            low
+        } else {
+            low * f64::EPSILON
+        };
         Self {
             size: high.abs() * INFLATION,
             error: left.abs() * (1.0 + 2.0 * f64::EPSILON),
