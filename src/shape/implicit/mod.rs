@@ -1,8 +1,12 @@
 //! Implicit surfaces f(x, y, z) = 0.
 
 pub mod baseline;
+pub mod bounded;
+pub mod differentiate;
+pub mod evaluate;
 pub mod expression;
 pub mod named;
+pub mod normal;
 pub mod polynomial;
 pub mod rational;
 pub mod structure;
