@@ -9,7 +9,7 @@ use crate::integrate::model::{Model, Needs};
 use crate::light::LightShape;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Replicates;
-use crate::scene::{ImplicitSurface, Object, SamplerKind, Scene, Shape, Surface};
+use crate::scene::{Object, SamplerKind, Scene, Shape, Surface};
 
 /// As many names as a line lists.
 const LISTED: usize = 6;
@@ -75,19 +75,26 @@ fn objects(scene: &Scene) -> String {
     format!("objects: {}", counted(dressed))
 }
 
-fn shape_kind(object: &Object) -> &'static str {
-    match &object.shape {
+fn shape_kind(object: &Object) -> String {
+    let name = match &object.shape {
         Shape::Sphere => "sphere",
         Shape::Cube => "cube",
         Shape::Cylinder => "cylinder",
         Shape::Disk => "disk",
         Shape::Rectangle => "rectangle",
         Shape::Plane => "plane",
-        Shape::Implicit(implicit) => match implicit.surface {
-            ImplicitSurface::Heart => "implicit heart",
-            ImplicitSurface::Mitchell => "implicit Mitchell",
-        },
-    }
+        Shape::Implicit(implicit) => {
+            let what = match &implicit.field.polynomial {
+                Some(polynomial) => format!("of degree {}", polynomial.degree()),
+                None => format!("of {} operations", implicit.field.tape.operations().len()),
+            };
+            return match implicit.name {
+                Some(name) => format!("implicit {name} {what}"),
+                None => format!("implicit surface {what}"),
+            };
+        }
+    };
+    name.to_owned()
 }
 
 fn surface_kind(surface: &Surface) -> &'static str {

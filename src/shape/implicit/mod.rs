@@ -2,8 +2,12 @@
 
 pub mod baseline;
 pub mod certified;
+pub mod bounded;
+pub mod differentiate;
+pub mod evaluate;
 pub mod expression;
 pub mod named;
+pub mod normal;
 pub mod polynomial;
 pub mod program;
 pub mod rational;
