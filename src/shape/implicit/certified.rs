@@ -40,8 +40,8 @@ pub struct Packet {
     pub active: u32,
     /// Rays that leave this very surface: `t_min` is 0 and the root there does not count.
     pub leaving: u32,
-    /// Of those, the ones that go to where the field is negative.
-    pub inward: u32,
+    /// Unit roundoff with which the origins of these were rounded.
+    pub roundoff: f64,
 }
 
 impl Default for Packet {
@@ -53,7 +53,7 @@ impl Default for Packet {
             t_max: [f64::INFINITY; WIDTH],
             active: 0,
             leaving: 0,
-            inward: 0,
+            roundoff: f64::EPSILON / 2.0,
         }
     }
 }
@@ -71,9 +71,10 @@ impl Packet {
 }
 
 /// Which arithmetic has decided.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum Tier {
     /// f64 in lanes.
+    #[default]
     Double,
     /// Double-double in lanes.
     DoubleDouble,
@@ -96,6 +97,23 @@ pub struct Answers {
     pub high: [f64; WIDTH],
     /// How many times it is a root; 0 where that is not known.
     pub multiplicity: [u32; WIDTH],
+    /// What has decided.
+    pub tiers: [Tier; WIDTH],
+    /// Lanes whose enclosure is wider than [`SHARP`] times the clipped stretch.
+    blurred: u32,
+}
+
+/// Width of an enclosure that counts as sharp, relative to the clipped stretch of the ray: half of
+/// it is what t may be off by.
+pub const SHARP: f64 = 1e-12;
+
+/// What an answer should be like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wish {
+    /// Enclosures that f64 leaves blurred are sharpened in double-double.
+    pub sharp: bool,
+    /// What double-double leaves undecided is decided exactly.
+    pub exact: bool,
 }
 
 /// Room for the forms of a packet.
@@ -109,30 +127,34 @@ pub trait DoubleLanes: Lanes<Scalar = f64> {}
 impl<L: Lanes<Scalar = f64>> DoubleLanes for L {}
 
 impl Certified {
-    /// The first hits of a packet, by the cheapest arithmetic that is certain of each, and the
-    /// tier of each lane's answer. No lane that is asked about is left undecided.
+    /// The first hits of a packet, by the cheapest arithmetic that is certain of each.
     pub fn first_hits(
         &self,
         level: Level,
         packet: &Packet,
+        wish: Wish,
         workspace: &mut Workspace,
-    ) -> (Answers, [Tier; WIDTH]) {
-        let mut tiers = [Tier::Double; WIDTH];
+    ) -> Answers {
         let mut answers = self.in_lanes(level, packet, packet.active, false, workspace);
         let mut open = packet.active & !(answers.found | answers.absent);
-        if open != 0 {
-            let sharper = self.in_lanes(level, packet, open, true, workspace);
-            for lane in lanes(open) {
-                tiers[lane] = Tier::DoubleDouble;
+        let blurred = if wish.sharp { answers.blurred & answers.found } else { 0 };
+        let again = open | blurred;
+        if again != 0 {
+            let sharper = self.in_lanes(level, packet, again, true, workspace);
+            let decided = sharper.found | sharper.absent;
+            for lane in lanes(again & decided) {
+                answers.tiers[lane] = Tier::DoubleDouble;
                 answers.take(&sharper, lane);
             }
-            open &= !(sharper.found | sharper.absent);
+            open &= !decided;
         }
-        for lane in lanes(open) {
-            tiers[lane] = Tier::Exact;
-            self.decide(packet, lane, &mut answers);
+        if wish.exact {
+            for lane in lanes(open) {
+                answers.tiers[lane] = Tier::Exact;
+                self.decide(packet, lane, &mut answers);
+            }
         }
-        (answers, tiers)
+        answers
     }
 
     /// One arithmetic's answers.
@@ -193,7 +215,7 @@ impl Certified {
             direction: at(&packet.direction),
         };
         let start = if packet.leaving >> lane & 1 == 1 {
-            ExactStart::OnSurface
+            ExactStart::OnSurface(packet.roundoff)
         } else {
             ExactStart::Free
         };

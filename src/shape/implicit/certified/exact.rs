@@ -19,12 +19,12 @@ struct IntegerRay {
 }
 
 /// What the ray's start is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum ExactStart {
     /// Nothing is known.
     Free,
-    /// A rounded point of the surface.
-    OnSurface,
+    /// A point of the surface, rounded with this unit roundoff.
+    OnSurface(f64),
 }
 
 impl IntegerRay {
@@ -119,7 +119,9 @@ pub(super) fn first_hit(
     let mut first: Option<ExactRoot> = None;
     for factor in &placed.factors {
         let mut coefficients = factor.program.exact(&coordinates, &one);
-        if start == ExactStart::OnSurface && is_start(&coefficients) {
+        if let ExactStart::OnSurface(roundoff) = start
+            && is_start(&coefficients, roundoff)
+        {
             coefficients = beyond_start(coefficients);
         }
         let Some(root) = first_root(&coefficients, &stretch) else {
@@ -157,11 +159,13 @@ fn earlier(a: ExactRoot, b: ExactRoot) -> ExactRoot {
     }
 }
 
-/// Whether the factor is the one whose root the start is: the first power dominates the value.
-fn is_start(coefficients: &[BigInt]) -> bool {
-    let largest = coefficients.iter().skip(1).map(|c| c.bits()).max();
-    // The rounded start is within 2⁻³² of the surface by any account.
-    coefficients[0].bits() + 32 < largest.unwrap_or(0)
+/// Whether the factor is the one whose root the start is: its value is small beside what it is
+/// elsewhere on the line. The start is off by some 2⁴ roundings of coordinates that may be 2¹²
+/// times as large as the object; a factor that is not the one is not as small.
+fn is_start(coefficients: &[BigInt], roundoff: f64) -> bool {
+    let largest = coefficients.iter().skip(1).map(BigInt::bits).max();
+    let bits = (1.0 / roundoff).log2() as u64 - 16;
+    coefficients[0].bits() + bits < largest.unwrap_or(0)
 }
 
 /// The field less its value at the start, divided by t: the level through the start itself.

@@ -2,7 +2,7 @@
 
 use super::super::program::Step;
 use super::place::{Certified, FactorField, Inverse};
-use super::{Answers, DoubleLanes, Packet, WIDTH};
+use super::{Answers, DoubleLanes, Packet, SHARP, WIDTH};
 use crate::math::lanes::{Mask, Real};
 use crate::math::words::{Row, Word};
 use crate::root::bernstein::{Problem, Roots, first_roots};
@@ -13,6 +13,8 @@ struct Clipped<L: DoubleLanes> {
     far: L::Real,
     /// Bound of the distance between rounded and exact local points on the clipped line.
     shift: L::Real,
+    /// What a unit roundoff of 1 in the world's coordinates moves the local start by.
+    start_shift: L::Real,
     meets: L::Mask,
     /// Lanes for which the bounds mean nothing.
     lost: L::Mask,
@@ -144,6 +146,8 @@ impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
             near,
             far,
             shift: rounding,
+            // Distance, product, sum and the way back: 2³ roundings with room to spare.
+            start_shift: (self.extent + self.extent) * l.real(8.0 * inverse.largest_row),
             meets: meets & near.le(far),
             lost: lost | !(far - near).lt(l.real(f64::INFINITY)) & meets & near.le(far),
         }
@@ -279,6 +283,7 @@ fn square<L: DoubleLanes, W: Word<L>>(
 /// What is asked of a factor's coefficients.
 struct Question<L: DoubleLanes> {
     error: L::Real,
+    start_error: L::Real,
     on_root: L::Mask,
     active: L::Mask,
 }
@@ -300,9 +305,7 @@ impl<L: DoubleLanes> Question<L> {
                         coefficients,
                         error: self.error,
                         on_root: self.on_root,
-                        // The start is a rounded point of a surface that was found to a few units
-                        // in the last place of its coordinates.
-                        start_error: self.error + self.error,
+                        start_error: self.start_error,
                         active: self.active,
                     },
                 )
@@ -353,8 +356,12 @@ impl<L: DoubleLanes> Combined<L> {
         let error = clipped
             .shift
             .mul_add(l.real(bounds.change), l.real(bounds.error));
+        // The start of a ray that leaves the surface is a root of it, rounded: the root was found
+        // up to twice the bound, its coordinates are off by some roundings of the world's.
+        let rounding = clipped.start_shift * l.real(packet.roundoff);
         let question = Question {
             error,
+            start_error: rounding.mul_add(l.real(bounds.change), error + error),
             on_root: l.mask_from_bits(packet.leaving),
             active: self.open & !self.undecided,
         };
@@ -412,6 +419,7 @@ impl<L: DoubleLanes> Combined<L> {
         let mut answers = Answers {
             found: sure.bits(),
             absent: absent.bits(),
+            blurred: (high - low).gt((clipped.far - clipped.near) * l.real(SHARP)).bits(),
             ..Answers::default()
         };
         l.store(self.t.max(low).min(high), &mut answers.t);

@@ -52,6 +52,8 @@ pub(super) struct Inverse {
     pub origin_error: f64,
     /// And what does not depend on the origin.
     pub offset_error: f64,
+    /// Largest sum of a row's magnitudes: local length of a world vector of components 1.
+    pub largest_row: f64,
 }
 
 /// A polynomial surface in the world.
@@ -218,9 +220,12 @@ impl Inverse {
                 if parts == 1 { [high, 0.0] } else { [high, low] }
             })
         });
+        let row_sum = |row: &[DoubleDouble; 4]| row[..3].iter().map(|e| e.to_f64().abs()).sum();
+        let largest_row = entries.iter().map(row_sum).fold(0.0, f64::max);
         if Self::is_exact(ladder, &entries) {
             return Self {
                 rows,
+                largest_row,
                 direction_error: 0.0,
                 origin_error: 0.0,
                 offset_error: 0.0,
@@ -237,6 +242,7 @@ impl Inverse {
         let direction_error = largest(&|row| bound(&row[..3]));
         Self {
             rows,
+            largest_row,
             direction_error,
             origin_error: direction_error,
             offset_error: largest(&|row| bound(&row[3..])),
