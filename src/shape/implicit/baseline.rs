@@ -13,11 +13,11 @@ use crate::scene::Implicit;
 use crate::shape::implicit::evaluate::Field;
 use crate::shape::implicit::normal;
 use crate::shape::ladder::{Ladder, ScaledRay};
-use crate::shape::{Query, SingularMatrix};
+use crate::shape::{Query, Ray, SingularMatrix};
 
 /// An implicit surface placed in the world.
 #[derive(Debug, Clone)]
-pub struct PlacedImplicit {
+pub struct SteppingFinder {
     field: Field,
     inside: [DVec3; 2],
     steps: u32,
@@ -26,7 +26,7 @@ pub struct PlacedImplicit {
 
 /// Where a ray meets an implicit surface, as far as the baseline finder can tell.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ImplicitHit {
+pub struct Stepped {
     /// Where on the ray, in units of its direction; finite.
     pub t: f64,
     /// World coordinates.
@@ -49,7 +49,7 @@ impl Line {
     }
 }
 
-impl PlacedImplicit {
+impl SteppingFinder {
     /// Places the surface.
     ///
     /// # Errors
@@ -65,7 +65,7 @@ impl PlacedImplicit {
 
     /// The first zero of the field, or change of its sign between two steps, with `t_min` < t <
     /// `t_max` inside the clip box; t = 0 counts where `t_min` is 0.
-    pub fn first_hit(&self, query: &Query) -> Option<ImplicitHit> {
+    pub fn first_hit(&self, query: &Query) -> Option<Stepped> {
         if !query.ray.is_valid() {
             return None;
         }
@@ -78,7 +78,14 @@ impl PlacedImplicit {
         let t = scaled_t / unit;
         let normal = self.normal(line.at(scaled_t), line.direction);
         let point = query.ray.origin + query.ray.direction * t;
-        (t.is_finite() && point.is_finite()).then_some(ImplicitHit { t, point, normal })
+        (t.is_finite() && point.is_finite()).then_some(Stepped { t, point, normal })
+    }
+
+    /// The unit outward normal, in the world, of a hit at t.
+    pub fn normal_at(&self, ray: &Ray, t: f64) -> Option<DVec3> {
+        let ray = ScaledRay::new(ray);
+        let line = self.local(&ray);
+        self.normal(line.at(t * power_of_two(ray.exponent())), line.direction)
     }
 
     /// The ray in object coordinates, rounded once from double-double.

@@ -137,7 +137,11 @@ impl Certified {
     ) -> Answers {
         let mut answers = self.in_lanes(level, packet, packet.active, false, workspace);
         let mut open = packet.active & !(answers.found | answers.absent);
-        let blurred = if wish.sharp { answers.blurred & answers.found } else { 0 };
+        let blurred = if wish.sharp {
+            answers.blurred & answers.found
+        } else {
+            0
+        };
         let again = open | blurred;
         if again != 0 {
             let sharper = self.in_lanes(level, packet, again, true, workspace);

@@ -1,17 +1,24 @@
-//! Implicit surfaces in lanes, by the report's own method.
+//! Implicit surfaces in lanes.
 //!
-//! The baseline finder: equal steps along the clipped ray, a change of sign, bisection. It proves
-//! nothing; a pair of roots within one step is missed. It stays as the yardstick for certified
-//! finders.
+//! Polynomials go to the certified finder, whatever the precision of the loop, in packets of
+//! eight. The baseline finder is the report's own method: equal steps along the clipped ray, a change
+//! of sign, bisection. It proves nothing; a pair of roots within one step is missed. It stays as the
+//! yardstick for certified finders.
 
+use std::cell::RefCell;
+
+use fearless_simd::Level;
 use glam::DVec3;
 
 use crate::math::affine::Affine;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
 use crate::math::vec3::{Rows, Vec3};
 use crate::scene::Implicit;
+use crate::shape::SingularMatrix;
+use crate::shape::implicit::certified::{Certified, Packet, WIDTH, Wish, Workspace};
 use crate::shape::implicit::evaluate::Field;
 use crate::shape::implicit::normal;
+use crate::shape::implicit::placed::{Finder, ImplicitTally};
 
 use super::LaneRay;
 use super::field::{LaneField, Scratch};
@@ -27,6 +34,13 @@ pub struct LaneImplicit<T> {
     half: [T; 3],
     steps: u32,
     inverse: Rows<T>,
+    finder: Finder,
+    level: Level,
+}
+
+thread_local! {
+    /// Room for the forms of a packet, once a thread.
+    static WORKSPACE: RefCell<Workspace> = RefCell::default();
 }
 
 /// What a ray that starts on the surface knows: which sign the field has just after the start.
@@ -40,11 +54,18 @@ pub struct StartSign<L: Lanes> {
 
 impl<T: Scalar> LaneImplicit<T> {
     /// Rounds a placement: clip box in object coordinates, world → object map.
-    pub fn new(implicit: &Implicit, inverse: &Affine) -> Self {
+    ///
+    /// # Errors
+    /// [`SingularMatrix`] where the matrix cannot be inverted.
+    pub fn new(
+        implicit: &Implicit,
+        to_world: &Affine,
+        inverse: &Affine,
+    ) -> Result<Self, SingularMatrix> {
         let inside = implicit.inside;
         let centre = (inside[0] + inside[1]) / 2.0;
         let half = (inside[1] - inside[0]) / 2.0;
-        Self {
+        Ok(Self {
             field: LaneField::new(&implicit.field.tape),
             scalar: Field::new(&implicit.field.tape),
             size: (inside[1] - inside[0]).max_element(),
@@ -52,6 +73,42 @@ impl<T: Scalar> LaneImplicit<T> {
             half: half.to_array().map(T::from_f64),
             steps: implicit.steps,
             inverse: Rows::from_f64(&inverse.rows),
+            finder: Finder::new(implicit, to_world)?,
+            level: Level::new(),
+        })
+    }
+
+    /// How hits are found.
+    pub fn finder(&self) -> &Finder {
+        &self.finder
+    }
+
+    /// The first hits before `limit`; where the mask is false, none is known.
+    #[inline(always)]
+    pub fn first_hit<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        ray: &LaneRay<L>,
+        start: StartSign<L>,
+        limit: L::Real,
+        active: L::Mask,
+        tally: &mut ImplicitTally,
+    ) -> (L::Real, L::Mask) {
+        match &self.finder {
+            Finder::SignChange => {
+                tally.uncertified += u64::from(active.bits().count_ones());
+                self.first_change(l, ray, start, limit, active)
+            }
+            Finder::Polynomial { certified, exact } => {
+                let wish = Wish {
+                    sharp: false,
+                    exact: *exact,
+                };
+                let rays = PacketRays::new(l, ray, limit);
+                let bits = [active.bits(), start.on.bits()];
+                let (t, found) = rays.ask(certified, wish, self.level, bits, L::COUNT, tally);
+                (l.load(&t), l.mask_from_bits(found))
+            }
         }
     }
 
@@ -158,5 +215,80 @@ impl<T: Scalar> LaneImplicit<T> {
                 ((low + high) * l.real(0.5), found)
             },
         )
+    }
+}
+
+/// As many lanes as there can be.
+const WIDEST: usize = 16;
+
+/// The rays of a packet as memory.
+struct PacketRays<T> {
+    origin: [[T; WIDEST]; 3],
+    direction: [[T; WIDEST]; 3],
+    limit: [T; WIDEST],
+}
+
+impl<T: Scalar> PacketRays<T> {
+    #[inline(always)]
+    fn new<L: Lanes<Scalar = T>>(l: L, ray: &LaneRay<L>, limit: L::Real) -> Self {
+        let stored = inlined(
+            #[inline(always)]
+            |x: L::Real| {
+                let mut to = [T::default(); WIDEST];
+                l.store(x, &mut to);
+                to
+            },
+        );
+        let vector = inlined(
+            #[inline(always)]
+            |v: Vec3<L::Real>| [stored(v.x), stored(v.y), stored(v.z)],
+        );
+        Self {
+            origin: vector(ray.origin),
+            direction: vector(ray.direction),
+            limit: stored(limit),
+        }
+    }
+
+    /// Asks the certified finder, eight rays at a time: `active` and `leaving` rays by bit.
+    #[inline(never)]
+    fn ask(
+        &self,
+        certified: &Certified,
+        wish: Wish,
+        level: Level,
+        [active, leaving]: [u32; 2],
+        count: usize,
+        tally: &mut ImplicitTally,
+    ) -> ([T; WIDEST], u32) {
+        let mut t = [T::default(); WIDEST];
+        let mut found = 0;
+        for base in (0..count).step_by(WIDTH) {
+            let mut packet = Packet {
+                active: active >> base & 0xff,
+                leaving: leaving >> base & 0xff,
+                roundoff: T::ROUNDOFF,
+                ..Packet::default()
+            };
+            if packet.active == 0 {
+                continue;
+            }
+            for lane in 0..WIDTH {
+                for axis in 0..3 {
+                    packet.origin[axis][lane] = self.origin[axis][base + lane].to_f64();
+                    packet.direction[axis][lane] = self.direction[axis][base + lane].to_f64();
+                }
+                packet.t_max[lane] = self.limit[base + lane].to_f64();
+            }
+            let answers = WORKSPACE
+                .with_borrow_mut(|workspace| certified.first_hits(level, &packet, wish, workspace));
+            let decided = answers.found | answers.absent;
+            for lane in (0..WIDTH).filter(|lane| packet.active >> lane & 1 == 1) {
+                t[base + lane] = T::from_f64(answers.t[lane]);
+                tally.count((decided >> lane & 1 == 1).then_some(answers.tiers[lane]));
+            }
+            found |= (answers.found & packet.active) << base;
+        }
+        (t, found)
     }
 }

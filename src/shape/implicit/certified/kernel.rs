@@ -419,7 +419,9 @@ impl<L: DoubleLanes> Combined<L> {
         let mut answers = Answers {
             found: sure.bits(),
             absent: absent.bits(),
-            blurred: (high - low).gt((clipped.far - clipped.near) * l.real(SHARP)).bits(),
+            blurred: (high - low)
+                .gt((clipped.far - clipped.near) * l.real(SHARP))
+                .bits(),
             ..Answers::default()
         };
         l.store(self.t.max(low).min(high), &mut answers.t);
