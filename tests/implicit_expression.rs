@@ -1,5 +1,9 @@
-//! The expression language of implicit surfaces: grammar, exactness, polynomials, limits.
+//! The expression language of implicit surfaces: grammar, exactness, polynomials, limits, and its
+//! place in scene files.
 
+use std::path::Path;
+
+use etalon::scene::{self, Diagnostic, FinderChoice, Implicit, Overrides, Shape};
 use etalon::shape::implicit::expression::{
     DEEPEST, LONGEST, MOST_BITS, MOST_EXPONENT, MOST_OPERATIONS, Parameter, Problem, check_name,
     parse, parse_constant, rational,
@@ -562,4 +566,177 @@ fn random_words_never_panic() {
         }
     }
     assert!(fields > 300 && errors > 300, "{fields} {errors}");
+}
+
+/// A scene with one implicit surface.
+fn scene_of(shape: &str) -> String {
+    format!(
+        "[camera]\nfrom = [0, 0, 5]\nto = [0, 0, 0]\nfov = 40\n[image]\nsize = [8, 8]\nspp = 1\n\
+         [materials]\nblack = {{}}\n[[object]]\nmaterial = \"black\"\n{shape}\n"
+    )
+}
+
+fn read(shape: &str, finder: Option<&str>) -> Result<(String, Implicit), Diagnostic> {
+    let options = Overrides {
+        finder: finder.map(str::to_owned),
+        ..Overrides::default()
+    };
+    match scene::parse("test.toml", &scene_of(shape), Path::new(""), &options) {
+        Ok(mut scene) => {
+            let object = scene.objects.remove(0);
+            let Shape::Implicit(implicit) = object.value.shape else {
+                panic!("{:?}", object.value.shape);
+            };
+            Ok((object.name, implicit))
+        }
+        Err(error) => Err(error.diagnostic().expect("a place").clone()),
+    }
+}
+
+#[test]
+fn scene_files_name_surfaces_or_write_them() {
+    let (name, torus) = read(r#"shape = { implicit = "torus" }"#, None).expect("a torus");
+    assert_eq!((name.as_str(), torus.name), ("torus #0", Some("torus")));
+    assert_eq!(torus.inside.map(|p| p.to_array()), [[-2.0; 3], [2.0; 3]]);
+    assert_eq!(
+        (torus.closed, torus.finder, torus.steps),
+        (false, FinderChoice::Auto, 1000)
+    );
+
+    let shape = r#"shape = { implicit = "a*x^2 + b*y - c", inside = [[0, 0, 0], [1, 2, 3]],
+        parameters = { a = 0.1, b = "a*9/8", c = 1_0.5e0 }, closed = true }"#;
+    let (name, field) = read(shape, None).expect("a field");
+    assert_eq!(
+        (name.as_str(), field.name, field.closed),
+        ("implicit #0", None, true)
+    );
+    let wanted = parse("x^2/10 + 9/80*y - 21/2", &[])
+        .expect("a field")
+        .polynomial;
+    assert_eq!(field.field.polynomial, wanted);
+}
+
+#[test]
+fn finders_are_the_object_s_else_the_image_s_unless_the_command_says() {
+    let finder = |shape: &str, command| Some(read(shape, command).ok()?.1.finder);
+    let own = r#"shape = { implicit = "heart", finder = "interval" }"#;
+    let plain = r#"shape = { implicit = "heart" }"#;
+    assert_eq!(finder(own, None), Some(FinderChoice::Interval));
+    assert_eq!(
+        finder(own, Some("sign-change")),
+        Some(FinderChoice::SignChange)
+    );
+    assert_eq!(
+        finder(plain, Some("polynomial")),
+        Some(FinderChoice::Polynomial)
+    );
+    let text = scene_of(plain).replace("spp = 1", "spp = 1\nfinder = \"sphere-trace\"");
+    let scene = scene::parse("test.toml", &text, Path::new(""), &Overrides::default());
+    let Shape::Implicit(heart) = &scene.expect("a scene").objects[0].value.shape else {
+        panic!("no implicit surface");
+    };
+    assert_eq!(heart.finder, FinderChoice::SphereTrace);
+    let error = read(own, Some("intervall")).expect_err("a misspelt finder");
+    assert_eq!((error.origin.as_str(), error.column), ("--finder", 1));
+    assert_eq!(error.suggestion.as_deref(), Some("interval"));
+}
+
+/// The mark « is where the message must point; the strings are of every kind TOML has.
+#[test]
+fn complaints_point_into_the_string_of_the_scene_file() {
+    let inside = "inside = [[0, 0, 0], [1, 1, 1]]";
+    let sine = r#"no function "sine""#;
+    let cases = [
+        (r#"shape = { implicit = "x^2 + «sine(x)" }"#, sine),
+        (r"shape = { implicit = 'x^2 + «sine(x)' }", sine),
+        (
+            "shape = { implicit = \"\"\"\nx^2\n + «sine(x)\"\"\" }",
+            sine,
+        ),
+        ("shape = { implicit = '''x^2\n + «sine(x)''' }", sine),
+        (
+            r#"shape = { implicit = "x^2 +«" }"#,
+            "the expression ends here",
+        ),
+        (r#"shape = { implicit = "x + «é" }"#, "'é'"),
+        (r#"shape = { implicit = "«" }"#, "is empty"),
+        // An escape moves the bytes: the whole string is meant.
+        (r#"shape = { implicit = «"x^2 +\tsine(x)" }"#, sine),
+        (
+            r#"shape = { implicit = "torus", parameters = { minor = "2*(«1/0)" } }"#,
+            "division by zero",
+        ),
+    ];
+    for (marked, message) in cases {
+        let marked = match marked.contains("torus") {
+            true => marked.to_owned(),
+            false => marked.replace(" }", &format!(", {inside} }}")),
+        };
+        let (before, after) = marked.split_once('«').expect("a mark");
+        let error = read(&format!("{before}{after}"), None).expect_err(&marked);
+        let line = before.rsplit('\n').next().unwrap_or("");
+        assert!(error.message.contains(message), "{error}");
+        assert_eq!(error.column, line.chars().count() + 1, "{error}");
+        assert_eq!(error.line, 12 + before.matches('\n').count(), "{error}");
+    }
+    let error = read(
+        &format!("shape = {{ implicit = \"sqr(x)\", {inside} }}"),
+        None,
+    );
+    let error = error.expect_err("a misspelt function");
+    assert_eq!(error.suggestion.as_deref(), Some("sqrt"));
+}
+
+#[test]
+fn scene_files_refuse_what_is_no_surface() {
+    let cases = [
+        (
+            r#"implicit = "1 + 1", inside = B"#,
+            "does not depend on x, y or z",
+        ),
+        (r#"implicit = "x - x", inside = B"#, "zero everywhere"),
+        (
+            r#"implicit = "(x + y)^2 - x^2 - 2*x*y - y^2", inside = B"#,
+            "zero everywhere",
+        ),
+        (
+            r#"implicit = "x^2 + y^2 - 1""#,
+            "object.shape.inside is missing",
+        ),
+        (r#"implicit = "hart""#, "object.shape.implicit is \"hart\""),
+        (
+            r#"implicit = "torus", parameters = { q = 1 }"#,
+            "no parameter of torus",
+        ),
+        (
+            r#"implicit = "torus", parameters = 3"#,
+            "object.shape.parameters is an integer",
+        ),
+        (
+            r#"implicit = "torus", parameters = { minor = true }"#,
+            "minor is a boolean",
+        ),
+        (
+            r#"implicit = "torus", parameters = { minor = "sqrt(2)" }"#,
+            "not a rational number",
+        ),
+        (
+            r#"implicit = "sin(x)", inside = B, finder = "polynomial""#,
+            "no polynomial",
+        ),
+        ("implicit = 3", "object.shape.implicit is an integer"),
+        (
+            r#"implicit = "goursat", parameters = { a = 0, b = 0, c = 1 }"#,
+            "with these parameters of goursat",
+        ),
+    ];
+    for (shape, message) in cases {
+        let shape = shape.replace('B', "[[0, 0, 0], [1, 1, 1]]");
+        let error = read(&format!("shape = {{ {shape} }}"), None).expect_err(&shape);
+        assert!(error.message.contains(message), "{shape}: {error}");
+    }
+    let tiny = r#"shape = { implicit = "torus", parameters = { minor = 1e-400 } }"#;
+    let (_, torus) = read(tiny, None).expect("exact as written, though no f64");
+    let polynomial = torus.field.polynomial.as_ref().expect("a polynomial");
+    assert!(polynomial.denominator().bits() > 2600);
 }

@@ -5,6 +5,7 @@ mod cli_render;
 mod film_files;
 mod fresnel;
 mod implicit_expression;
+mod implicit_field;
 mod lane_functions;
 mod lane_shapes;
 mod lanes_support;

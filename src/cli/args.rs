@@ -45,6 +45,10 @@ pub struct SceneArguments {
     /// Lay this over the scene after the panel: a dotted key and a TOML value or a bare word.
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
+    /// Finder of all implicit surfaces, whatever the scene says: auto, sign-change, sphere-trace,
+    /// interval, polynomial.
+    #[arg(long, value_name = "NAME")]
+    pub finder: Option<String>,
 }
 
 impl SceneArguments {
@@ -57,6 +61,7 @@ impl SceneArguments {
         Overrides {
             panel: panel.map(str::to_owned),
             set: self.set.iter().cloned().chain(options).collect(),
+            finder: self.finder.clone(),
         }
     }
 }

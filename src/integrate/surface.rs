@@ -81,7 +81,7 @@ pub fn surfaces<L: Lanes>(
                 let LaneSurface { point, normal } = if shape.kind.is_some() {
                     shape.surface(l, p)
                 } else {
-                    implicit_surface(l, model, k, p)
+                    implicit_surface(l, model, k, p, ray.direction, here)
                 };
                 let front = normal.dot(ray.direction).lt(zero);
                 out.point = Vec3::select(l, here, point, out.point);
@@ -131,23 +131,22 @@ pub fn surfaces<L: Lanes>(
     )
 }
 
-/// An implicit surface's outward normal: its gradient; where that vanishes, the direction from
-/// the object's origin, so that the normal is finite everywhere.
+/// An implicit surface's outward normal; finite everywhere.
 #[inline(always)]
 fn implicit_surface<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
     object: u32,
     point: Vec3<L::Real>,
+    direction: Vec3<L::Real>,
+    here: L::Mask,
 ) -> LaneSurface<L> {
     let inverse = &model.shapes[object as usize].inverse;
     let local = inverse.point(l, point);
     let mut normal = local;
     for (k, implicit) in &model.implicits {
         if *k == object {
-            let gradient = implicit.gradient(l, local);
-            let defined = gradient.length_squared().gt(l.real(0.0));
-            normal = Vec3::select(l, defined, gradient, normal);
+            normal = implicit.normal(l, local, inverse.vector(l, direction), here);
         }
     }
     LaneSurface {

@@ -12,3 +12,4 @@ pub mod lanes;
 pub mod number;
 pub mod scalar_lane;
 pub mod vec3;
+pub mod words;

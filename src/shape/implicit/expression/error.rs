@@ -34,6 +34,13 @@ impl ExpressionError {
     }
 }
 
+impl From<Problem> for ExpressionError {
+    /// A problem of a text as a whole.
+    fn from(problem: Problem) -> Self {
+        Self::new(problem, 0..0)
+    }
+}
+
 /// The kinds of mistakes.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Problem {
