@@ -5,6 +5,7 @@
 //! the function along a stretch of t.
 
 pub mod bernstein;
+pub mod departure;
 pub mod exact;
 pub mod interval;
 pub mod sign_change;

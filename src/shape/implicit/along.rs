@@ -2,9 +2,10 @@
 
 use super::interval_program::IntervalProgram;
 use crate::math::instructions::DoubleLanes;
-use crate::math::interval::{Interval, bits, down, up};
+use crate::math::interval::{Interval, ScalarInterval, bits, down, up};
 use crate::math::jet::Jet;
 use crate::math::lanes::Lanes;
+use crate::math::scalar_lane::One;
 use crate::root::interval::{Enclosed, PIECES, Pieces};
 
 /// A line base + s · direction in object coordinates, each known within bounds; s ≥ 0.
@@ -14,6 +15,18 @@ pub struct EnclosedLine {
     pub base: [[f64; 2]; 3],
     /// Its change with s.
     pub direction: [[f64; 2]; 3],
+}
+
+impl EnclosedLine {
+    /// All parallel lines whose base is at most `shift` away in each coordinate.
+    pub fn blurred(&self, shift: f64) -> Self {
+        let moved = ScalarInterval::splat(One, [-shift, shift]);
+        let base = self.base.map(|base| {
+            let base = ScalarInterval::splat(One, base) + moved;
+            [base.low, base.high]
+        });
+        Self { base, ..*self }
+    }
 }
 
 /// The field of a program along a line.

@@ -10,6 +10,7 @@ use crate::math::double_double::DoubleDouble;
 use crate::math::instructions::{DoubleLanes, Instructions, Job};
 use crate::math::interval::ScalarInterval;
 use crate::math::scalar_lane::One;
+use crate::root::departure::departure;
 use crate::root::interval::{self, Search};
 use crate::root::{Outcome, Root, sphere_trace};
 use crate::shape::line::LocalRay;
@@ -44,38 +45,13 @@ impl EnclosedField {
         }
     }
 
-    /// As [`first_hit`](Self::first_hit), by sphere tracing of the undivided field with a bound of
-    /// its gradient over the box, see [`steepness`].
-    pub fn first_hit_by_spheres(
-        &self,
-        ray: &LocalRay<DoubleDouble>,
-        inside: &[DVec3; 2],
-        limits: [f64; 2],
-        steepness: f64,
-        bound: u32,
-    ) -> Search {
-        self.first_by(ray, inside, limits, Method::Spheres { steepness }, bound)
-    }
-
-    /// The first zero on a ray inside a closed box with t_min < t < t_max; t = t_min counts where
-    /// `closed`, as far as it can be told. `bound` limits the evaluations.
+    /// The first zero on a ray inside a closed box with t_min < t < t_max, by a search.
     pub fn first_hit(
         &self,
         ray: &LocalRay<DoubleDouble>,
         inside: &[DVec3; 2],
         limits: [f64; 2],
-        bound: u32,
-    ) -> Search {
-        self.first_by(ray, inside, limits, Method::Subdivision, bound)
-    }
-
-    fn first_by(
-        &self,
-        ray: &LocalRay<DoubleDouble>,
-        inside: &[DVec3; 2],
-        limits: [f64; 2],
-        method: Method,
-        bound: u32,
+        search: &Searching,
     ) -> Search {
         let Some(clipped) = clipped(ray, inside, limits) else {
             return Search {
@@ -86,24 +62,86 @@ impl EnclosedField {
         self.instructions.run(First {
             field: self,
             clipped: &clipped,
-            method,
-            bound,
+            searching: search,
         })
     }
 }
 
-/// Which finder.
-#[derive(Debug, Clone, Copy)]
-enum Method {
+/// How to search a ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Searching {
+    /// Which finder.
+    pub method: Method,
+    /// Most evaluations for each factor.
+    pub bound: u32,
+    /// For a ray that leaves this very surface at t = 0: how far each local coordinate of its
+    /// start may be from the true hit's. The zero there does not count.
+    pub leaving: Option<f64>,
+}
+
+impl Default for Searching {
+    fn default() -> Self {
+        Self {
+            method: Method::Subdivision,
+            bound: WORK_BOUND,
+            leaving: None,
+        }
+    }
+}
+
+/// A finder that works with enclosures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Method {
+    /// [`crate::root::interval`].
     Subdivision,
-    Spheres { steepness: f64 },
+    /// [`crate::root::sphere_trace`].
+    Spheres {
+        /// An upper bound of the gradient's length over the box, see [`super::over_box`].
+        steepness: f64,
+    },
 }
 
 struct First<'a> {
     field: &'a EnclosedField,
     clipped: &'a Clipped,
-    method: Method,
-    bound: u32,
+    searching: &'a Searching,
+}
+
+impl First<'_> {
+    /// The search of one factor, from where it may begin.
+    #[inline(always)]
+    fn search<L: DoubleLanes>(&self, lanes: L, program: &IntervalProgram, to: f64) -> Search {
+        let line = &self.clipped.line;
+        let mut along = Along::new(lanes, program, line);
+        let from = match self.searching.leaving {
+            None => Some(0.0),
+            Some(shift) => {
+                let blurred = line.blurred(shift);
+                let mut blurred = Along::new(lanes, program, &blurred);
+                departure(&mut blurred, &mut along, to)
+            }
+        };
+        let Some(from) = from else {
+            return Search {
+                outcome: Outcome::Undecided,
+                evaluations: 4,
+            };
+        };
+        if from >= to {
+            return Search {
+                outcome: Outcome::Absent,
+                evaluations: 2,
+            };
+        }
+        let bound = self.searching.bound;
+        match self.searching.method {
+            Method::Subdivision => interval::first_zero(&mut along, [from, to], bound),
+            Method::Spheres { steepness } => {
+                let lipschitz = steepness * speed(self.clipped) * (1.0 + 4.0 * f64::EPSILON);
+                sphere_trace::first_zero(&mut along, [from, to], lipschitz, bound)
+            }
+        }
+    }
 }
 
 impl Job for First<'_> {
@@ -117,15 +155,7 @@ impl Job for First<'_> {
         let mut first: Option<Root> = None;
         let mut evaluations = 0;
         for (program, multiplicity) in &self.field.factors {
-            let mut along = Along::new(lanes, program, &clipped.line);
-            let search = match self.method {
-                Method::Subdivision => interval::first_zero(&mut along, [0.0, to], self.bound),
-                Method::Spheres { steepness } => {
-                    let lipschitz = steepness * speed(clipped);
-                    let lipschitz = lipschitz * (1.0 + 4.0 * f64::EPSILON);
-                    sphere_trace::first_zero(&mut along, [0.0, to], lipschitz, self.bound)
-                }
-            };
+            let search = self.search(lanes, program, to);
             evaluations += search.evaluations;
             match search.outcome {
                 Outcome::Absent => {}

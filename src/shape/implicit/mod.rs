@@ -7,6 +7,7 @@ pub mod certified;
 pub mod clip;
 pub mod differentiate;
 pub mod enclosed;
+pub mod enclosed_packet;
 pub mod evaluate;
 pub mod expression;
 pub mod interval_program;

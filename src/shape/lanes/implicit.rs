@@ -15,7 +15,7 @@ use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
 use crate::math::vec3::{Rows, Vec3};
 use crate::scene::Implicit;
 use crate::shape::SingularMatrix;
-use crate::shape::implicit::certified::{Certified, Packet, WIDTH, Wish, Workspace};
+use crate::shape::implicit::certified::{Packet, WIDTH, Workspace};
 use crate::shape::implicit::evaluate::Field;
 use crate::shape::implicit::normal;
 use crate::shape::implicit::placed::{Finder, ImplicitTally};
@@ -102,14 +102,10 @@ impl<T: Scalar> LaneImplicit<T> {
                 tally.uncertified += u64::from(active.bits().count_ones());
                 self.first_change(l, ray, start, limit, active)
             }
-            Finder::Polynomial { certified, exact } => {
-                let wish = Wish {
-                    sharp: false,
-                    exact: *exact,
-                };
+            finder => {
                 let rays = PacketRays::new(l, ray, limit);
                 let bits = [active.bits(), start.on.bits()];
-                let (t, found) = rays.ask(certified, wish, self.level, bits, L::COUNT, tally);
+                let (t, found) = rays.ask(finder, self.level, bits, L::COUNT, tally);
                 (l.load(&t), l.mask_from_bits(found))
             }
         }
@@ -270,12 +266,11 @@ impl<T: Scalar> PacketRays<T> {
         }
     }
 
-    /// Asks the certified finder, eight rays at a time: `active` and `leaving` rays by bit.
+    /// Asks a finder that proves its answers, eight rays at a time: `active` and `leaving` rays by bit.
     #[inline(never)]
     fn ask(
         &self,
-        certified: &Certified,
-        wish: Wish,
+        finder: &Finder,
         level: Level,
         [active, leaving]: [u32; 2],
         count: usize,
@@ -301,7 +296,8 @@ impl<T: Scalar> PacketRays<T> {
                 packet.t_max[lane] = self.limit[base + lane].to_f64();
             }
             let answers = WORKSPACE
-                .with_borrow_mut(|workspace| certified.first_hits(level, &packet, wish, workspace));
+                .with_borrow_mut(|workspace| finder.first_hits(level, &packet, false, workspace));
+            let answers = answers.unwrap_or_default();
             let decided = answers.found | answers.absent;
             for lane in (0..WIDTH).filter(|lane| packet.active >> lane & 1 == 1) {
                 t[base + lane] = T::from_f64(answers.t[lane]);
