@@ -133,9 +133,7 @@ fn nearest<L: DoubleLanes>(operation: Operation, a: Interval<L>, b: Interval<L>)
             a.high / b.high,
         ])
         .whole_where(b.may_be_zero()),
-        Operation::SquareRoot => {
-            Interval::new(l, a.low.max(l.real(0.0)).sqrt(), a.high.sqrt())
-        }
+        Operation::SquareRoot => Interval::new(l, a.low.max(l.real(0.0)).sqrt(), a.high.sqrt()),
     }
 }
 

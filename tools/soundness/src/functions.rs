@@ -252,7 +252,13 @@ fn operands(function: Function, source: &mut Source) -> [[f64; 2]; 2] {
         _ => around(20.0),
     };
     let b = around(20.0);
-    let sorted = |[low, high]: [f64; 2]| if low <= high { [low, high] } else { [high, low] };
+    let sorted = |[low, high]: [f64; 2]| {
+        if low <= high {
+            [low, high]
+        } else {
+            [high, low]
+        }
+    };
     let trigonometric = matches!(
         function,
         Function::Sine

@@ -5,6 +5,7 @@ mod arithmetic;
 mod exact;
 mod functions;
 mod random;
+mod rays;
 
 use std::process::ExitCode;
 
@@ -26,7 +27,10 @@ struct Arguments {
     /// Random intervals for each function.
     #[arg(long, default_value_t = 1_000_000)]
     functions: u64,
-    /// Which random intervals.
+    /// Random rays for each of some general expressions.
+    #[arg(long, default_value_t = 10_000)]
+    rays: u64,
+    /// Which random intervals and rays.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Leave out the rounding outward: the check must fail.
@@ -40,17 +44,29 @@ fn main() -> ExitCode {
     println!("instruction sets: {}", names.join(", "));
     let mut sound = true;
     for operation in OPERATIONS {
-        let check = |seed, count| {
-            Some(arithmetic::check(operation, seed, count, arguments.unsound))
-        };
-        sound &= told(&format!("{operation:?}"), &over(&arguments, arguments.arithmetic, check));
+        let check =
+            |seed, count| Some(arithmetic::check(operation, seed, count, arguments.unsound));
+        sound &= told(
+            &format!("{operation:?}"),
+            &over(&arguments, arguments.arithmetic, check),
+        );
     }
     for function in FUNCTIONS {
         let check = |seed, count| functions::check(function, seed, count, arguments.unsound);
-        sound &= told(&format!("{function:?}"), &over(&arguments, arguments.functions, check));
+        sound &= told(
+            &format!("{function:?}"),
+            &over(&arguments, arguments.functions, check),
+        );
+    }
+    if arguments.rays > 0 && !arguments.unsound {
+        sound &= rays::check(arguments.rays, arguments.seed);
     }
     println!("{}", if sound { "sound" } else { "NOT SOUND" });
-    if sound { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    if sound {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
 }
 
 /// All pieces of a check together; a piece that cannot be done counts as violated.
@@ -79,7 +95,11 @@ fn told(name: &str, report: &Report) -> bool {
         report.checked,
         report.violated,
         report.different,
-        report.example.as_ref().map(|e| format!("; {e}")).unwrap_or_default()
+        report
+            .example
+            .as_ref()
+            .map(|e| format!("; {e}"))
+            .unwrap_or_default()
     );
     report.is_good()
 }

@@ -46,7 +46,11 @@ impl Source {
     pub fn near(&mut self, x: f64) -> f64 {
         let mut y = x;
         for _ in 0..self.below(5) {
-            y = if self.below(2) == 0 { y.next_up() } else { y.next_down() };
+            y = if self.below(2) == 0 {
+                y.next_up()
+            } else {
+                y.next_down()
+            };
         }
         if y.is_finite() { y } else { x }
     }
