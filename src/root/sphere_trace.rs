@@ -71,6 +71,10 @@ fn within<F: Enclosed>(
     let mut evaluations = 0;
     let usable = lipschitz.is_finite();
     while usable && evaluations < bound {
+        if evaluations % RENEWAL == RENEWAL - 1 {
+            evaluations += 1;
+            march.renew(function, march.opposite.unwrap_or(to));
+        }
         let end = march.opposite.unwrap_or(to);
         let before = march.clear;
         let points = ahead(before, step, end);
@@ -84,8 +88,12 @@ fn within<F: Enclosed>(
         let resolution = 4.0 * f64::EPSILON * size;
         let stuck = gained <= 0.0 && step <= resolution;
         match march.opposite {
-            Some(end) if stuck || end - march.clear <= resolution => {
+            Some(end) if end - march.clear <= resolution => {
                 return done(march.found(end), evaluations);
+            }
+            Some(_) if stuck => {
+                let outcome = march.narrowed(function, &mut evaluations, bound);
+                return done(outcome, evaluations);
             }
             None if stuck => return done(Outcome::Undecided, evaluations),
             _ => {}
@@ -93,12 +101,12 @@ fn within<F: Enclosed>(
         // Points reach twice as far as the last balls did.
         step = (gained * 2.0).max(step / 16.0).min(end - march.clear);
     }
-    let outcome = match march.opposite {
-        Some(end) if usable && march.sign != 0 => march.found(end),
-        _ => Outcome::Undecided,
-    };
-    done(outcome, evaluations)
+    done(Outcome::Undecided, evaluations)
 }
+
+/// Evaluations after which the bound is proved anew for what is left of the stretch: close to a
+/// zero it then is the slope there, and steps no longer shrink in a fixed proportion.
+const RENEWAL: u32 = 8;
 
 fn done(outcome: Outcome, evaluations: u32) -> Search {
     Search {
@@ -130,6 +138,22 @@ struct March {
 }
 
 impl March {
+    /// Proves a bound for what is left.
+    fn renew<F: Enclosed>(&mut self, function: &mut F, end: f64) {
+        let width = (end - self.clear) / PIECES as f64;
+        let starts: [f64; PIECES] = std::array::from_fn(|i| self.clear + width * i as f64);
+        let ends: [f64; PIECES] = std::array::from_fn(|i| *starts.get(i + 1).unwrap_or(&end));
+        if !starts.iter().zip(&ends).all(|(a, b)| a <= b) {
+            return;
+        }
+        let pieces = function.over(&starts, &ends);
+        let steepest = |i: usize| pieces.slope[1][i].max(-pieces.slope[0][i]);
+        let steepest = (0..PIECES).map(steepest).fold(0.0, f64::max);
+        if pieces.broken == 0 && steepest < self.lipschitz {
+            self.lipschitz = steepest;
+        }
+    }
+
     fn advance(&mut self, points: &[f64; PIECES], [low, high]: [[f64; PIECES]; 2]) {
         for i in 0..PIECES {
             let (t, sign) = (points[i], i8::from(low[i] > 0.0) - i8::from(high[i] < 0.0));
@@ -158,6 +182,33 @@ impl March {
                 self.clear = self.clear.max((t + radius).next_down());
             }
         }
+    }
+
+    /// The end where balls have become too small to move on although a change of sign lies ahead:
+    /// the first opposite sign that can be told, unless the old sign comes back in between.
+    fn narrowed<F: Enclosed>(
+        &mut self,
+        function: &mut F,
+        evaluations: &mut u32,
+        bound: u32,
+    ) -> Outcome {
+        while let Some(end) = self.opposite
+            && *evaluations < bound
+        {
+            let width = end - self.clear;
+            let t = std::array::from_fn(|i| self.clear + width * (i as f64 + 1.0) / 9.0);
+            let [low, high] = function.at(&t);
+            *evaluations += 1;
+            let sign = |i: usize| i8::from(low[i] > 0.0) - i8::from(high[i] < 0.0);
+            if (0..PIECES).any(|i| sign(i) == self.sign) {
+                return Outcome::Undecided;
+            }
+            match (0..PIECES).find(|i| sign(*i) == -self.sign) {
+                Some(i) if t[i] < end => self.opposite = Some(t[i]),
+                _ => return self.found(end),
+            }
+        }
+        Outcome::Undecided
     }
 
     fn found(&self, end: f64) -> Outcome {
