@@ -6,6 +6,7 @@ mod film_files;
 mod fresnel;
 mod implicit_expression;
 mod implicit_field;
+mod implicit_oracle;
 mod lane_functions;
 mod lane_shapes;
 mod lanes_support;
