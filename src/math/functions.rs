@@ -16,13 +16,38 @@ fn single<L: Lanes>() -> bool {
 
 /// Σ cᵢ xⁱ by Horner's rule.
 #[inline(always)]
-fn polynomial<L: Lanes>(l: L, x: L::Real, coefficients: &[f64]) -> L::Real {
+pub(super) fn polynomial<L: Lanes>(l: L, x: L::Real, coefficients: &[f64]) -> L::Real {
     let mut sum = l.real(coefficients[coefficients.len() - 1]);
     for &c in coefficients.iter().rev().skip(1) {
         sum = sum.mul_add(x, l.real(c));
     }
     sum
 }
+
+/// Taylor series of sin x / x in x².
+pub(super) const SIN: [f64; 9] = [
+    1.0,
+    -1.0 / 6.0,
+    1.0 / 120.0,
+    -1.0 / 5_040.0,
+    1.0 / 362_880.0,
+    -1.0 / 39_916_800.0,
+    1.0 / 6_227_020_800.0,
+    -1.0 / 1_307_674_368_000.0,
+    1.0 / 355_687_428_096_000.0,
+];
+/// Taylor series of cos x in x².
+pub(super) const COS: [f64; 9] = [
+    1.0,
+    -1.0 / 2.0,
+    1.0 / 24.0,
+    -1.0 / 720.0,
+    1.0 / 40_320.0,
+    -1.0 / 3_628_800.0,
+    1.0 / 479_001_600.0,
+    -1.0 / 87_178_291_200.0,
+    1.0 / 20_922_789_888_000.0,
+];
 
 /// (sin 2πu, cos 2πu) for |u| ≤ 2.
 ///
@@ -31,28 +56,6 @@ fn polynomial<L: Lanes>(l: L, x: L::Real, coefficients: &[f64]) -> L::Real {
 /// (π/4)¹⁸/18! = 2e-18.
 #[inline(always)]
 pub fn sin_cos_turns<L: Lanes>(l: L, u: L::Real) -> (L::Real, L::Real) {
-    const SIN: [f64; 9] = [
-        1.0,
-        -1.0 / 6.0,
-        1.0 / 120.0,
-        -1.0 / 5_040.0,
-        1.0 / 362_880.0,
-        -1.0 / 39_916_800.0,
-        1.0 / 6_227_020_800.0,
-        -1.0 / 1_307_674_368_000.0,
-        1.0 / 355_687_428_096_000.0,
-    ];
-    const COS: [f64; 9] = [
-        1.0,
-        -1.0 / 2.0,
-        1.0 / 24.0,
-        -1.0 / 720.0,
-        1.0 / 40_320.0,
-        -1.0 / 3_628_800.0,
-        1.0 / 479_001_600.0,
-        -1.0 / 87_178_291_200.0,
-        1.0 / 20_922_789_888_000.0,
-    ];
     let quarter = (u * l.real(4.0)).round();
     let x = quarter.mul_add(l.real(-0.25), u) * l.real(std::f64::consts::TAU);
     let xx = x * x;

@@ -319,26 +319,36 @@ fn intersection(scene: &Scene, plan: &Plan) -> String {
         Tables::Single(tables) => finders(&tables.0.implicits),
         Tables::Double(tables) => finders(&tables.0.implicits),
     };
-    let certified = finders.iter().filter(|certified| **certified).count();
-    if certified > 0 {
-        text.push_str(&format!(
-            "; {certified} implicit by certified roots of polynomials: in lanes of f64, then of \
-             double-double, then exactly"
-        ));
-    }
-    if finders.len() > certified {
-        let count = finders.len() - certified;
-        text.push_str(&format!(
-            "; {count} implicit by equal steps and bisection, not certified"
-        ));
+    for (name, how) in FINDERS {
+        let count = finders.iter().filter(|finder| **finder == name).count();
+        if count > 0 {
+            text.push_str(&format!("; {count} implicit by {how}"));
+        }
     }
     text
 }
 
-/// Whether each implicit surface is found with proof.
-fn finders<T: Scalar>(implicits: &[(u32, LaneImplicit<T>)]) -> Vec<bool> {
-    let certified = |(_, implicit): &(u32, LaneImplicit<T>)| implicit.finder().is_certified();
-    implicits.iter().map(certified).collect()
+/// Finders of implicit surfaces and how they work.
+const FINDERS: [(&str, &str); 4] = [
+    (
+        "polynomial",
+        "certified roots of polynomials: in lanes of f64, then of double-double, then exactly",
+    ),
+    (
+        "interval",
+        "interval enclosures in lanes of f64, cut until each answer is proved",
+    ),
+    (
+        "sphere-trace",
+        "steps as long as a proved Lipschitz bound allows",
+    ),
+    ("sign-change", "equal steps and bisection, not certified"),
+];
+
+/// The finder of each implicit surface.
+fn finders<T: Scalar>(implicits: &[(u32, LaneImplicit<T>)]) -> Vec<&'static str> {
+    let name = |(_, implicit): &(u32, LaneImplicit<T>)| implicit.finder().name();
+    implicits.iter().map(name).collect()
 }
 
 fn sampler(scene: &Scene, plan: &Plan) -> String {

@@ -5,7 +5,11 @@
 //! the function along a stretch of t.
 
 pub mod bernstein;
+pub mod departure;
 pub mod exact;
+pub mod interval;
+pub mod sign_change;
+pub mod sphere_trace;
 
 /// A zero.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -31,7 +31,7 @@ pub struct Stepped {
     pub t: f64,
     /// World coordinates.
     pub point: DVec3,
-    /// Unit outward normal in the world; see [`normal`](super::normal) for where the gradient
+    /// Unit outward normal in the world; see [`normal`] for where the gradient
     /// vanishes.
     pub normal: Option<DVec3>,
 }

@@ -7,6 +7,7 @@
 use num_rational::BigRational;
 
 use super::tape::{Algebra, Binary, Unary};
+use crate::math::lanes::inlined;
 
 /// What an arithmetic needs besides, for derivatives.
 pub trait Differentiable: Algebra {
@@ -31,6 +32,12 @@ pub struct WithGradient<V> {
     pub value: V,
     /// Derivatives along x, y and z.
     pub gradient: [Option<V>; 3],
+}
+
+/// Three values by index, inlined as the standard library's maps are not sure to be.
+#[inline(always)]
+fn three<R>(f: impl Fn(usize) -> R) -> [R; 3] {
+    [f(0), f(1), f(2)]
 }
 
 impl<A: Differentiable> Gradients<'_, A> {
@@ -87,6 +94,26 @@ impl<A: Differentiable> Gradients<'_, A> {
         }
     }
 
+    /// p·da, where it is there.
+    #[expect(
+        clippy::manual_map,
+        reason = "what calculates in lanes must be inlined, and map is not sure to be"
+    )]
+    #[inline(always)]
+    fn all(
+        &self,
+        a: &WithGradient<A::Value>,
+        p: impl Fn(&A::Value) -> A::Value,
+    ) -> [Option<A::Value>; 3] {
+        three(
+            #[inline(always)]
+            |i| match &a.gradient[i] {
+                Some(da) => Some(p(da)),
+                None => None,
+            },
+        )
+    }
+
     /// p·da + q·db, each only where it is there.
     #[inline(always)]
     fn combined(
@@ -96,12 +123,15 @@ impl<A: Differentiable> Gradients<'_, A> {
         p: impl Fn(&A::Value) -> A::Value,
         q: impl Fn(&A::Value) -> A::Value,
     ) -> [Option<A::Value>; 3] {
-        [0, 1, 2].map(|i| match (&a.gradient[i], &b.gradient[i]) {
-            (None, None) => None,
-            (Some(da), None) => Some(p(da)),
-            (None, Some(db)) => Some(q(db)),
-            (Some(da), Some(db)) => Some(self.sum(&p(da), &q(db))),
-        })
+        three(
+            #[inline(always)]
+            |i| match (&a.gradient[i], &b.gradient[i]) {
+                (None, None) => None,
+                (Some(da), None) => Some(p(da)),
+                (None, Some(db)) => Some(q(db)),
+                (Some(da), Some(db)) => Some(self.sum(&p(da), &q(db))),
+            },
+        )
     }
 
     /// The gradient of the one or the other.
@@ -112,14 +142,17 @@ impl<A: Differentiable> Gradients<'_, A> {
         below: &WithGradient<A::Value>,
         above: &WithGradient<A::Value>,
     ) -> [Option<A::Value>; 3] {
-        [0, 1, 2].map(|i| {
-            let (below, above) = (&below.gradient[i], &above.gradient[i]);
-            let zero = || self.0.number(0.0);
-            (below.is_some() || above.is_some()).then(|| {
-                let part = |x: &Option<A::Value>| x.clone().unwrap_or_else(zero);
-                self.0.where_negative(s, &part(below), &part(above))
-            })
-        })
+        three(
+            #[inline(always)]
+            |i| {
+                let (below, above) = (&below.gradient[i], &above.gradient[i]);
+                let zero = || self.0.number(0.0);
+                (below.is_some() || above.is_some()).then(|| {
+                    let part = |x: &Option<A::Value>| x.clone().unwrap_or_else(zero);
+                    self.0.where_negative(s, &part(below), &part(above))
+                })
+            },
+        )
     }
 }
 
@@ -130,7 +163,10 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
     fn coordinate(&self, axis: usize) -> Self::Value {
         WithGradient {
             value: self.0.coordinate(axis),
-            gradient: [0, 1, 2].map(|i| (i == axis).then(|| self.0.number(1.0))),
+            gradient: three(
+                #[inline(always)]
+                |i| (i == axis).then(|| self.0.number(1.0)),
+            ),
         }
     }
 
@@ -146,8 +182,11 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
     fn unary(&self, function: Unary, a: &Self::Value) -> Self::Value {
         let value = self.0.unary(function, &a.value);
         if function == Unary::Negative {
-            let negative = |d: &Option<A::Value>| d.as_ref().map(|d| self.negative(d));
-            let gradient = a.gradient.each_ref().map(negative);
+            let gradient = self.all(
+                a,
+                #[inline(always)]
+                |d| self.negative(d),
+            );
             return WithGradient { value, gradient };
         }
         if a.gradient.iter().all(Option::is_none) {
@@ -155,8 +194,11 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
             return WithGradient { value, gradient };
         }
         let slope = self.slope(function, &a.value, &value);
-        let scaled = |d: &Option<A::Value>| d.as_ref().map(|d| self.product(&slope, d));
-        let gradient = a.gradient.each_ref().map(scaled);
+        let gradient = self.all(
+            a,
+            #[inline(always)]
+            |d| self.product(&slope, d),
+        );
         WithGradient { value, gradient }
     }
 
@@ -164,15 +206,33 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
     fn binary(&self, function: Binary, a: &Self::Value, b: &Self::Value) -> Self::Value {
         let (x, y) = (&a.value, &b.value);
         let value = self.0.binary(function, x, y);
-        let same = |d: &A::Value| d.clone();
+        let same = inlined(
+            #[inline(always)]
+            |d: &A::Value| d.clone(),
+        );
         let gradient = match function {
             Binary::Sum => self.combined(a, b, same, same),
-            Binary::Difference => self.combined(a, b, same, |d| self.negative(d)),
-            Binary::Product => self.combined(a, b, |d| self.product(d, y), |d| self.product(d, x)),
+            Binary::Difference => self.combined(
+                a,
+                b,
+                same,
+                #[inline(always)]
+                |d| self.negative(d),
+            ),
+            Binary::Product => self.combined(
+                a,
+                b,
+                #[inline(always)]
+                |d| self.product(d, y),
+                #[inline(always)]
+                |d| self.product(d, x),
+            ),
             Binary::Quotient => self.combined(
                 a,
                 b,
+                #[inline(always)]
                 |d| self.quotient(d, y),
+                #[inline(always)]
                 |d| self.negative(&self.quotient(&self.product(&value, d), y)),
             ),
             Binary::Minimum => self.chosen(&self.difference(x, y), a, b),
@@ -183,7 +243,9 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
                 self.combined(
                     a,
                     b,
+                    #[inline(always)]
                     |d| self.quotient(&self.product(y, d), &square),
+                    #[inline(always)]
                     |d| self.negative(&self.quotient(&self.product(x, d), &square)),
                 )
             }
@@ -191,7 +253,9 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
             Binary::Power => self.combined(
                 a,
                 b,
+                #[inline(always)]
                 |d| self.product(&value, &self.quotient(&self.product(y, d), x)),
+                #[inline(always)]
                 |d| self.product(&value, &self.product(&self.0.unary(Unary::Logarithm, x), d)),
             ),
         };
@@ -206,8 +270,11 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
             _ => self.0.whole_power(&a.value, n - 1),
         };
         let slope = self.product(&self.0.number(f64::from(n)), &below);
-        let scaled = |d: &Option<A::Value>| d.as_ref().map(|d| self.product(&slope, d));
-        let gradient = a.gradient.each_ref().map(scaled);
+        let gradient = self.all(
+            a,
+            #[inline(always)]
+            |d| self.product(&slope, d),
+        );
         WithGradient { value, gradient }
     }
 }

@@ -3,7 +3,8 @@
 use fearless_simd::Level;
 
 use super::baseline::{Stepped, SteppingFinder};
-use super::certified::{Certified, Packet, Tier, Wish, Workspace};
+use super::certified::{Answers, Certified, Packet, Tier, Wish, Workspace};
+use super::enclosed_packet::EnclosedPacket;
 use crate::math::affine::Affine;
 use crate::scene::{FinderChoice, Implicit};
 use crate::shape::{Query, SingularMatrix};
@@ -22,10 +23,15 @@ pub enum Finder {
         /// Whether what double-double leaves undecided is decided exactly.
         exact: bool,
     },
+    /// Interval subdivision.
+    Interval(Box<EnclosedPacket>),
+    /// Sphere tracing with a proved bound.
+    SphereTrace(Box<EnclosedPacket>),
 }
 
 impl Finder {
-    /// The finder that a surface asks for; `auto` is certified isolation for polynomials.
+    /// The finder that a surface asks for; `auto` is certified isolation for polynomials, and
+    /// interval subdivision for other fields.
     ///
     /// # Errors
     /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
@@ -33,15 +39,50 @@ impl Finder {
         let exact = match implicit.finder {
             FinderChoice::Auto => true,
             FinderChoice::Polynomial => false,
-            _ => return Ok(Self::SignChange),
+            FinderChoice::SignChange => return Ok(Self::SignChange),
+            FinderChoice::Interval => return Self::interval(implicit, to_world),
+            FinderChoice::SphereTrace => {
+                let placed = EnclosedPacket::by_spheres(implicit, to_world)?;
+                return Ok(Self::SphereTrace(Box::new(placed)));
+            }
         };
         let certified = Certified::new(&implicit.field.tape, implicit.inside, to_world)?;
-        Ok(
-            certified.map_or(Self::SignChange, |certified| Self::Polynomial {
+        match certified {
+            Some(certified) => Ok(Self::Polynomial {
                 certified: Box::new(certified),
                 exact,
             }),
-        )
+            None => Self::interval(implicit, to_world),
+        }
+    }
+
+    fn interval(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
+        let placed = EnclosedPacket::by_subdivision(implicit, to_world)?;
+        Ok(Self::Interval(Box::new(placed)))
+    }
+
+    /// The first hits of a packet; `None` from the finder that proves nothing. `sharp` asks for
+    /// narrow enclosures where they cost more.
+    pub fn first_hits(
+        &self,
+        level: Level,
+        packet: &Packet,
+        sharp: bool,
+        workspace: &mut Workspace,
+    ) -> Option<Answers> {
+        match self {
+            Self::SignChange => None,
+            Self::Polynomial { certified, exact } => {
+                let wish = Wish {
+                    sharp,
+                    exact: *exact,
+                };
+                Some(certified.first_hits(level, packet, wish, workspace))
+            }
+            Self::Interval(enclosed) | Self::SphereTrace(enclosed) => {
+                Some(enclosed.first_hits(packet))
+            }
+        }
     }
 
     /// Its name.
@@ -49,6 +90,8 @@ impl Finder {
         match self {
             Self::SignChange => "sign-change",
             Self::Polynomial { .. } => "polynomial",
+            Self::Interval(_) => "interval",
+            Self::SphereTrace(_) => "sphere-trace",
         }
     }
 
@@ -167,7 +210,11 @@ impl PlacedImplicit {
         if !query.ray.is_valid() {
             return ImplicitAnswer::Absent;
         }
-        let Finder::Polynomial { certified, exact } = &self.finder else {
+        let mut packet = Packet::default();
+        let limits = [query.t_min, query.t_max];
+        packet.set(0, query.ray.origin, query.ray.direction, limits);
+        let answers = self.finder.first_hits(self.level, &packet, true, workspace);
+        let Some(answers) = answers else {
             tally.uncertified += 1;
             let stepped = self.stepping.first_hit(query);
             return stepped.map_or(ImplicitAnswer::Absent, |Stepped { t, point, normal }| {
@@ -181,14 +228,6 @@ impl PlacedImplicit {
                 })
             });
         };
-        let mut packet = Packet::default();
-        let limits = [query.t_min, query.t_max];
-        packet.set(0, query.ray.origin, query.ray.direction, limits);
-        let wish = Wish {
-            sharp: true,
-            exact: *exact,
-        };
-        let answers = certified.first_hits(self.level, &packet, wish, workspace);
         let decided = (answers.found | answers.absent) & 1 == 1;
         tally.count(decided.then_some(answers.tiers[0]));
         if answers.found & 1 == 1 {

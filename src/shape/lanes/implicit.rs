@@ -15,13 +15,13 @@ use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
 use crate::math::vec3::{Rows, Vec3};
 use crate::scene::Implicit;
 use crate::shape::SingularMatrix;
-use crate::shape::implicit::certified::{Certified, Packet, WIDTH, Wish, Workspace};
+use crate::shape::implicit::certified::{Packet, WIDTH, Workspace};
 use crate::shape::implicit::evaluate::Field;
 use crate::shape::implicit::normal;
 use crate::shape::implicit::placed::{Finder, ImplicitTally};
 
 use super::LaneRay;
-use super::field::{LaneField, Scratch};
+use super::field::{LaneField, Scratch, each};
 
 /// An implicit surface placed in the world.
 #[derive(Debug, Clone)]
@@ -42,6 +42,9 @@ thread_local! {
     /// Room for the forms of a packet, once a thread.
     static WORKSPACE: RefCell<Workspace> = RefCell::default();
 }
+
+/// Steps taken at once: reading a tape costs about as much as three operations of its own.
+const STRIDE: usize = 4;
 
 /// What a ray that starts on the surface knows: which sign the field has just after the start.
 #[derive(Clone, Copy)]
@@ -99,14 +102,10 @@ impl<T: Scalar> LaneImplicit<T> {
                 tally.uncertified += u64::from(active.bits().count_ones());
                 self.first_change(l, ray, start, limit, active)
             }
-            Finder::Polynomial { certified, exact } => {
-                let wish = Wish {
-                    sharp: false,
-                    exact: *exact,
-                };
+            finder => {
                 let rays = PacketRays::new(l, ray, limit);
                 let bits = [active.bits(), start.on.bits()];
-                let (t, found) = rays.ask(certified, wish, self.level, bits, L::COUNT, tally);
+                let (t, found) = rays.ask(finder, self.level, bits, L::COUNT, tally);
                 (l.load(&t), l.mask_from_bits(found))
             }
         }
@@ -178,28 +177,45 @@ impl<T: Scalar> LaneImplicit<T> {
                 if !clipped.any() {
                     return (near, found);
                 }
-                let mut scratch = Scratch::default();
+                let mut scratch = Scratch::<L, 1>::default();
                 let mut value = inlined(
                     #[inline(always)]
-                    |p| self.field.value(l, p, &mut scratch),
+                    |p| self.field.values(l, [p], &mut scratch)[0],
                 );
+                let mut scratch = Scratch::<L, STRIDE>::default();
                 let step = (far - near) * l.real(1.0 / f64::from(self.steps));
                 let mut negative = value(o.along(d, near)).lt(zero);
                 // On the surface the field's sign at the start is rounding noise, its sign after it known.
                 negative = (negative & !start.on) | (start.inward & start.on);
                 let mut t = near;
-                for i in 1..=self.steps {
-                    let next = step.mul_add(l.real(f64::from(i)), near);
-                    let change_to = value(o.along(d, next)).lt(zero);
-                    let changed =
-                        ((change_to & !negative) | (negative & !change_to)) & clipped & !found;
-                    low = l.select(changed, t, low);
-                    high = l.select(changed, next, high);
-                    found = found | changed;
+                for first in (1..=self.steps).step_by(STRIDE) {
+                    let steps: [L::Real; STRIDE] = each(
+                        zero,
+                        #[inline(always)]
+                        |i| {
+                            // Beyond the last step it is asked again, which changes nothing.
+                            let number = (first + i as u32).min(self.steps);
+                            step.mul_add(l.real(f64::from(number)), near)
+                        },
+                    );
+                    let points: [Vec3<L::Real>; STRIDE] = each(
+                        o,
+                        #[inline(always)]
+                        |i: usize| o.along(d, steps[i]),
+                    );
+                    let values = self.field.values(l, points, &mut scratch);
+                    for (next, value) in steps.into_iter().zip(values) {
+                        let change_to = value.lt(zero);
+                        let changed =
+                            ((change_to & !negative) | (negative & !change_to)) & clipped & !found;
+                        low = l.select(changed, t, low);
+                        high = l.select(changed, next, high);
+                        found = found | changed;
+                        t = next;
+                    }
                     if !(clipped & !found).any() {
                         break;
                     }
-                    t = next;
                 }
                 if !found.any() {
                     return (near, found);
@@ -250,12 +266,11 @@ impl<T: Scalar> PacketRays<T> {
         }
     }
 
-    /// Asks the certified finder, eight rays at a time: `active` and `leaving` rays by bit.
+    /// Asks a finder that proves its answers, eight rays at a time: `active` and `leaving` rays by bit.
     #[inline(never)]
     fn ask(
         &self,
-        certified: &Certified,
-        wish: Wish,
+        finder: &Finder,
         level: Level,
         [active, leaving]: [u32; 2],
         count: usize,
@@ -281,7 +296,8 @@ impl<T: Scalar> PacketRays<T> {
                 packet.t_max[lane] = self.limit[base + lane].to_f64();
             }
             let answers = WORKSPACE
-                .with_borrow_mut(|workspace| certified.first_hits(level, &packet, wish, workspace));
+                .with_borrow_mut(|workspace| finder.first_hits(level, &packet, false, workspace));
+            let answers = answers.unwrap_or_default();
             let decided = answers.found | answers.absent;
             for lane in (0..WIDTH).filter(|lane| packet.active >> lane & 1 == 1) {
                 t[base + lane] = T::from_f64(answers.t[lane]);
