@@ -5,5 +5,6 @@ pub mod double_double;
 pub mod exact;
 pub mod functions;
 pub mod lanes;
+pub mod lookup;
 pub mod number;
 pub mod vec3;

@@ -293,9 +293,9 @@ fn precision(plan: &Plan) -> String {
 }
 
 fn intersection(scene: &Scene, plan: &Plan) -> String {
-    let hierarchy = match &plan.tables {
-        Tables::Single(tables) => tables.0.hierarchy.is_some(),
-        Tables::Double(tables) => tables.0.hierarchy.is_some(),
+    let (hierarchy, occluders) = match &plan.tables {
+        Tables::Single(tables) => (tables.0.hierarchy.is_some(), tables.0.occluders.len()),
+        Tables::Double(tables) => (tables.0.hierarchy.is_some(), tables.0.occluders.len()),
     };
     let implicit = |object: &&Object| matches!(object.shape, Shape::Implicit(_));
     let implicits = scene
@@ -314,6 +314,11 @@ fn intersection(scene: &Scene, plan: &Plan) -> String {
             format!("each ray asks a list of {count} {noun}")
         }
     );
+    if occluders < count {
+        text.push_str(&format!(
+            "; shadow rays ask {occluders}, as the others can hide no light"
+        ));
+    }
     if implicits > 0 {
         text.push_str(&format!(
             "; {implicits} implicit by equal steps and bisection, not certified"
