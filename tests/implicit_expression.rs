@@ -576,7 +576,7 @@ fn scene_of(shape: &str) -> String {
     )
 }
 
-fn read(shape: &str, finder: Option<&str>) -> Result<(String, Implicit), Diagnostic> {
+fn read(shape: &str, finder: Option<&str>) -> Result<(String, Implicit), Box<Diagnostic>> {
     let options = Overrides {
         finder: finder.map(str::to_owned),
         ..Overrides::default()
@@ -589,7 +589,7 @@ fn read(shape: &str, finder: Option<&str>) -> Result<(String, Implicit), Diagnos
             };
             Ok((object.name, implicit))
         }
-        Err(error) => Err(error.diagnostic().expect("a place").clone()),
+        Err(error) => Err(Box::new(error.diagnostic().expect("a place").clone())),
     }
 }
 

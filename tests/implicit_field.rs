@@ -41,9 +41,7 @@ fn constants_are_rounded_to_nearest() {
     for _ in 0..2_000 {
         let [a, b] = [(); 2].map(|()| {
             let digits = random.random_range(1..5);
-            let number =
-                (0..digits).fold(BigInt::from(1), |n, _| (n << 61) + random.random::<u32>());
-            number
+            (0..digits).fold(BigInt::from(1), |n, _| (n << 61) + random.random::<u32>())
         });
         let value = BigRational::new(a, b);
         let rounded = nearest(&value);

@@ -30,9 +30,8 @@ struct Case {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Answer {
     ray: Ray,
-    near: f64,
-    far: f64,
-    error: f64,
+    near: [f64; 2],
+    far: [f64; 2],
     hit: bool,
     miss: bool,
 }
@@ -53,6 +52,7 @@ impl Job for Spans<'_> {
                 #[inline(always)]
                 || {
                     let ray = LaneRay::<L>::new(
+                        l,
                         Vec3::splat(l, case.ray.origin),
                         Vec3::splat(l, case.ray.direction),
                     );
@@ -67,15 +67,21 @@ impl Job for Spans<'_> {
                     origin: rounded(case.ray.origin),
                     direction: rounded(case.ray.direction),
                 },
-                near: lane(span.near),
-                far: lane(span.far),
-                error: lane(span.error),
+                near: [lane(span.near.low), lane(span.near.high)],
+                far: [lane(span.far.low), lane(span.far.high)],
                 hit: span.hit.any(),
                 miss: span.miss.any(),
             });
         }
         answers
     }
+}
+
+/// How far the truth is from the middle of an enclosure, in units of half its width; the truth
+/// itself is rounded to f64, by half a unit.
+fn share([low, high]: [f64; 2], truth: f64) -> f64 {
+    let off = (truth - (low + (high - low) / 2.0)).abs() - f64::ROUNDOFF * truth.abs();
+    off.max(0.0) / ((high - low) / 2.0)
 }
 
 #[derive(Default)]
@@ -102,7 +108,8 @@ impl Record {
         if answer.hit && answer.miss {
             self.wrong.push(what());
         } else if answer.miss {
-            if truth.is_some() {
+            // The shape may also lie behind as a whole.
+            if truth.is_some_and(|truth| truth.far.t >= 0.0) {
                 self.wrong.push(what());
             }
         } else if answer.hit {
@@ -111,13 +118,8 @@ impl Record {
                 self.wrong.push(what());
                 return;
             };
-            let off = (answer.near - truth.near.t)
-                .abs()
-                .max((answer.far - truth.far.t).abs());
-            // The truth itself is rounded to f64, by half a unit.
-            let rounding = f64::ROUNDOFF * truth.near.t.abs().max(truth.far.t.abs());
-            let share = (off - rounding).max(0.0) / answer.error;
-            if share > 1.0 || !answer.error.is_finite() {
+            let share = share(answer.near, truth.near.t).max(share(answer.far, truth.far.t));
+            if !(share <= 1.0) {
                 self.wrong.push(format!("{share} of the bound: {}", what()));
             } else {
                 self.tightest = self.tightest.max(share);
@@ -339,9 +341,10 @@ fn all_instruction_sets_give_the_same_spans() {
                 let same = |x: f64, y: f64| crate::lanes_support::same_bits(x, y);
                 assert!(
                     (a.hit, a.miss) == (b.hit, b.miss)
-                        && same(a.near, b.near)
-                        && same(a.far, b.far)
-                        && same(a.error, b.error),
+                        && same(a.near[0], b.near[0])
+                        && same(a.near[1], b.near[1])
+                        && same(a.far[0], b.far[0])
+                        && same(a.far[1], b.far[1]),
                     "{name}: {a:?} {b:?}"
                 );
             }
@@ -355,7 +358,10 @@ fn a_wrong_span_is_noticed() {
     let mut record = Record::default();
     for (case, mut answer) in cases.iter().zip(best(Precision::Double, &Spans(&cases))) {
         // A bound a million times too small, as of a forgotten term.
-        answer.error *= 1e-6;
+        for [low, high] in [&mut answer.near, &mut answer.far] {
+            let (middle, half) = ((*low + *high) / 2.0, (*high - *low) / 2.0);
+            (*low, *high) = (middle - 1e-6 * half, middle + 1e-6 * half);
+        }
         record.check(case, &answer);
     }
     assert!(record.wrong.len() > 10, "{}", record.wrong.len());

@@ -61,6 +61,7 @@ pub fn bounce<L: Lanes, const C: usize>(
 ) -> u32 {
     let active = l.mask_from_bits(active);
     let ray = LaneRay::<L>::new(
+        l,
         vector(l, pool, RealField::Origin, at),
         vector(l, pool, RealField::Direction, at),
     );
@@ -84,7 +85,7 @@ pub fn bounce<L: Lanes, const C: usize>(
     };
 
     let found = nearest(l, model, &ray, &leaving, active, step.rungs);
-    let hit = active & !found.object.same(l.int(NOTHING));
+    let hit = active & !found.part.same(l.int(NOTHING));
     if let Some(environment) = model.environment {
         step.add(l, active & !hit, l.int(environment), l.real(1.0));
     }
@@ -107,14 +108,13 @@ pub fn bounce<L: Lanes, const C: usize>(
     let mut going = scatters & (within | beyond);
     let cut = scatters & !going;
     if any(cut) {
-        let slot = Slot::Beyond.at(l, step.depth);
-        let u = model.sequence.single(l, step.id, slot);
+        let u = model.sequence.single(l, step.id, Slot::Beyond, step.depth);
         let chosen = cut & u.lt(l.real(BEYOND_SHARE));
         step.go_beyond(l, chosen, beyond_slots);
         going = going | chosen;
     }
 
-    let next = step.scatter(l, &ray, &surface, found.object, going);
+    let next = step.scatter(l, &ray, &surface, going);
     let alive = step.roulette(l, going);
     step.note_end(l, &next, alive);
 
@@ -127,7 +127,7 @@ pub fn bounce<L: Lanes, const C: usize>(
     set_vector(l, pool, RealField::Origin, at, surface.point);
     set_vector(l, pool, RealField::Direction, at, next.direction);
     pool.set_real(l, RealField::Pdf, 0, at, next.pdf);
-    pool.set_int(l, IntField::Departure, at, found.object);
+    pool.set_int(l, IntField::Departure, at, surface.object);
     pool.set_int(l, IntField::Flags, at, flags);
     pool.set_int(l, IntField::Depth, at, depth);
     pool.set_int(l, IntField::Slot, at, slots);
@@ -181,7 +181,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             origin: lane_vector(l, ray.origin, 0),
             direction: lane_vector(l, ray.direction, 0),
             distance: l.lane(found.t, 0).to_f64(),
-            object: some_object(l.int_lane(found.object, 0)),
+            object: some_object(l.int_lane(surface.object, 0)),
             point: lane_vector(l, surface.point, 0),
             normal: lane_vector(l, surface.normal, 0),
             front: set(surface.front),
@@ -334,8 +334,10 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let beyond = has(l, self.flags, flags::BEYOND);
         let share = l.select(beyond, l.real(BEYOND_SHARE), one);
         let survival = (largest * carried * share).min(l.real(LARGEST_SURVIVAL));
-        let slot = Slot::Roulette.at(l, self.depth);
-        let u = self.model.sequence.single(l, self.id, slot);
+        let u = self
+            .model
+            .sequence
+            .single(l, self.id, Slot::Roulette, self.depth);
         let survives = late & u.lt(survival);
         let rewards = array(l, one / survival);
         for i in each(survives.bits()) {

@@ -1,12 +1,14 @@
 //! A chunk of samples from camera to tristimulus values.
 
+use std::ops::Range;
+
 use super::bounce::bounce;
 use super::develop::Spectrometer;
 use super::intersect::{NOTHING, Rungs};
 use super::model::Model;
-use super::pool::{IntField, Pool, RealField, Rows, WIDEST, array, flags, int_array};
+use super::pool::{IntField, Pool, RealField, Rows, WIDEST, flags};
 use super::replay::Vertex;
-use crate::math::lanes::{Lanes, Scalar};
+use crate::math::lanes::{Int, Lanes, Scalar};
 use crate::spectrum::grid::CELLS;
 
 /// Paths in flight: a multiple of every lane count, small enough to stay in the cache beside the
@@ -14,6 +16,8 @@ use crate::spectrum::grid::CELLS;
 pub const POOL: usize = 512;
 /// Most samples of a chunk.
 pub const CHUNK: usize = 4096;
+/// 0, 1, 2 …
+const LANE_NUMBERS: [u32; WIDEST] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 /// One camera sample to take: pixel and index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,6 +28,50 @@ pub struct Request {
     pub y: u32,
     /// Index of the sample in the pixel, replicates interleaved.
     pub sample: u32,
+}
+
+/// Camera samples to take, by column; packets may read past the last one.
+#[derive(Debug, Clone, Default)]
+pub struct Requests {
+    x: Vec<u32>,
+    y: Vec<u32>,
+    sample: Vec<u32>,
+    length: usize,
+}
+
+impl Requests {
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        for column in [&mut self.x, &mut self.y, &mut self.sample] {
+            column.clear();
+            column.resize(WIDEST, 0);
+        }
+        self.length = 0;
+    }
+
+    /// Adds samples `from .. to` of a pixel.
+    pub fn push(&mut self, x: u32, y: u32, from: u32, to: u32) {
+        let length = self.length + (to - from) as usize;
+        for (column, value) in [(&mut self.x, x), (&mut self.y, y)] {
+            column.truncate(self.length);
+            column.resize(length, value);
+            column.resize(length + WIDEST, 0);
+        }
+        self.sample.truncate(self.length);
+        self.sample.extend(from..to);
+        self.sample.resize(length + WIDEST, 0);
+        self.length = length;
+    }
+
+    /// Their number.
+    pub fn len(&self) -> usize {
+        self.length
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.length == 0
+    }
 }
 
 /// What `max_depth` cuts off, as sums over camera samples of their luminance beyond it.
@@ -82,7 +130,7 @@ pub fn render<L: Lanes, const C: usize>(
     l: L,
     model: &Model<L::Scalar>,
     spectrometer: &Spectrometer<L::Scalar>,
-    requests: &[Request],
+    requests: &Requests,
     workspace: &mut Workspace<L::Scalar, C>,
 ) {
     l.vectorize(
@@ -96,7 +144,7 @@ fn render_inlined<L: Lanes, const C: usize>(
     l: L,
     model: &Model<L::Scalar>,
     spectrometer: &Spectrometer<L::Scalar>,
-    requests: &[Request],
+    requests: &Requests,
     workspace: &mut Workspace<L::Scalar, C>,
 ) {
     let Workspace {
@@ -121,7 +169,7 @@ fn render_inlined<L: Lanes, const C: usize>(
             pool.compact(l);
             while taken < requests.len() && pool.length + L::COUNT <= POOL {
                 let end = requests.len().min(taken + L::COUNT);
-                start(l, model, &requests[taken..end], taken, pool, rows);
+                start(l, model, requests, taken..end, pool, rows);
                 taken = end;
             }
             pool.all_alive::<L>();
@@ -155,32 +203,22 @@ fn render_inlined<L: Lanes, const C: usize>(
     }
 }
 
-/// Puts the camera rays of at most one packet of requests at the end of the pool; their rows are
-/// `first ..`.
+/// Puts the camera rays of the requests in `range`, at most one packet, at the end of the pool.
 #[inline(always)]
 fn start<L: Lanes, const C: usize>(
     l: L,
     model: &Model<L::Scalar>,
-    requests: &[Request],
-    first: usize,
+    requests: &Requests,
+    range: Range<usize>,
     pool: &mut Pool<L::Scalar>,
     rows: &mut Rows<L::Scalar, C>,
 ) {
-    let mut numbers = [[0u32; WIDEST]; 5];
-    let replicates = model.sequence.replicates;
-    for (i, request) in requests.iter().enumerate() {
-        numbers[0][i] = request.x;
-        numbers[1][i] = request.y;
-        (numbers[2][i], numbers[3][i]) = replicates.place(request.sample);
-        numbers[4][i] = (first + i) as u32;
-    }
-    let [x, y, replicate, index, slot] = [
-        l.load_int(&numbers[0]),
-        l.load_int(&numbers[1]),
-        l.load_int(&numbers[2]),
-        l.load_int(&numbers[3]),
-        l.load_int(&numbers[4]),
-    ];
+    let first = range.start;
+    let count = range.len();
+    let x = l.load_int(&requests.x[first..]);
+    let y = l.load_int(&requests.y[first..]);
+    let sample = l.load_int(&requests.sample[first..]);
+    let (replicate, index) = model.sequence.replicates.places(l, sample);
     let id = model.sequence.identity(l, x, y, replicate, index);
     let sample = model.sequence.camera(l, id, model.needs.lens);
     let (origin, direction) = model.camera.rays(l, x, y, &sample);
@@ -188,19 +226,15 @@ fn start<L: Lanes, const C: usize>(
     // The hero's cell, and from it the row that all C wavelengths share.
     let position = sample.wavelength * l.real(CELLS as f64);
     let cell = l.truncate(position);
-    let cells = int_array(l, cell);
-    let fractions = array(l, position - l.to_real(cell));
-    let per_wavelength = (CELLS / C) as u32;
-    let mut row = [0; WIDEST];
-    for i in 0..requests.len() {
-        let slot = first + i;
-        row[i] = cells[i] % per_wavelength;
-        rows.row[slot] = row[i];
-        rows.hero[slot] = cells[i] / per_wavelength;
-        rows.fraction[slot] = fractions[i];
-        rows.radiance[slot] = [L::Scalar::default(); C];
-        rows.throughput[slot] = [L::Scalar::from_f64(1.0); C];
-    }
+    let row = cell & l.int((CELLS / C) as u32 - 1);
+    l.store_int(row, &mut rows.row[first..]);
+    l.store_int(
+        cell.right((CELLS / C).trailing_zeros()),
+        &mut rows.hero[first..],
+    );
+    l.store(position - l.to_real(cell), &mut rows.fraction[first..]);
+    rows.radiance[range.clone()].fill([L::Scalar::default(); C]);
+    rows.throughput[range].fill([L::Scalar::from_f64(1.0); C]);
 
     let at = pool.length;
     for (field, v) in [
@@ -217,7 +251,8 @@ fn start<L: Lanes, const C: usize>(
     pool.set_int(l, IntField::Depth, at, l.int(0));
     pool.set_int(l, IntField::Key, at, id.key);
     pool.set_int(l, IntField::Index, at, id.index);
+    let slot = l.load_int(&LANE_NUMBERS).plus(l.int(first as u32));
     pool.set_int(l, IntField::Slot, at, slot);
-    pool.set_int(l, IntField::Row, at, l.load_int(&row));
-    pool.length += requests.len();
+    pool.set_int(l, IntField::Row, at, row);
+    pool.length += count;
 }

@@ -4,13 +4,13 @@ use glam::DVec3;
 
 use super::model::{Many, Model};
 use super::pool::{WIDEST, array, each};
-use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
+use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 use crate::shape::Tally;
 use crate::shape::hierarchy::{BoxRay, Descent};
 use crate::shape::implicit::placed::ImplicitTally;
 use crate::shape::lanes::implicit::StartSign;
-use crate::shape::lanes::{LaneRay, Span};
+use crate::shape::lanes::{Enclosure, LaneRay, Span};
 use crate::shape::resolve::Departure;
 
 /// Marks rays that hit or leave nothing.
@@ -55,18 +55,20 @@ pub struct Leaving<L: Lanes> {
 pub struct Nearest<L: Lanes> {
     /// Distance.
     pub t: L::Real,
-    /// Object; [`NOTHING`] where nothing is hit.
-    pub object: L::Int,
+    /// Number of the part (see [`super::parts`]); [`NOTHING`] where nothing is hit.
+    pub part: L::Int,
 }
 
 /// One object's answer for rays that start anywhere.
 struct Candidate<L: Lanes> {
-    t: L::Real,
-    error: L::Real,
-    hit: L::Mask,
-    undecided: L::Mask,
-    /// Lower bound of where an undecided hit could be.
-    earliest: L::Real,
+    /// Where the crossing is; the lower end also of one that is not certain.
+    at: Enclosure<L>,
+    /// There is a crossing that counts.
+    certain: L::Mask,
+    /// There may be one.
+    possible: L::Mask,
+    /// Which of the shape's parts it is on.
+    part: L::Int,
 }
 
 /// Picks the crossing that counts: the first one ahead, or the exit for rays that go inward from
@@ -80,37 +82,34 @@ fn candidate<L: Lanes>(
     inward: L::Mask,
 ) -> Candidate<L> {
     let zero = l.real(0.0);
-    let ahead = inlined(
-        #[inline(always)]
-        |t: L::Real| t.gt(span.error),
-    );
-    let behind = inlined(
-        #[inline(always)]
-        |t: L::Real| t.lt(-span.error),
-    );
+    let Span { near, far, .. } = span;
     if flat {
-        let miss = span.miss | behind(span.near) | own;
-        let hit = span.hit & ahead(span.near) & !own;
+        let possible = !(span.miss | own | near.high.lt(zero));
         return Candidate {
-            t: span.near,
-            error: span.error,
-            hit,
-            undecided: !hit & !miss,
-            earliest: (span.near - span.error).max(zero),
+            at: Enclosure {
+                // The larger of NaN and 0 is 0: what is not known could be anywhere.
+                low: near.low.max(zero),
+                high: near.high,
+            },
+            certain: span.hit & near.low.gt(zero) & possible,
+            possible,
+            part: span.parts[0],
         };
     }
     let own_inward = own & inward;
-    let miss = span.miss | behind(span.far) | (own & !inward);
-    let enters = ahead(span.near) & !own_inward;
-    let leaves = (behind(span.near) | own_inward) & ahead(span.far);
-    let hit = span.hit & (enters | leaves) & !miss;
-    let t = l.select(enters, span.near, span.far);
+    let possible = !(span.miss | far.high.lt(zero) | (own & !inward));
+    let enters = near.low.gt(zero) & !own_inward;
+    let leaves = (near.high.lt(zero) | own_inward) & far.low.gt(zero);
+    let certain = span.hit & (enters | leaves) & possible;
+    let low = l.select(enters, near.low, l.select(certain, far.low, near.low));
     Candidate {
-        t,
-        error: span.error,
-        hit,
-        undecided: !hit & !miss,
-        earliest: l.select(own_inward, zero, (span.near - span.error).max(zero)),
+        at: Enclosure {
+            low: low.max(zero),
+            high: l.select(enters, near.high, far.high),
+        },
+        certain,
+        possible,
+        part: l.select_int(enters, span.parts[0], span.parts[1]),
     }
 }
 
@@ -132,16 +131,32 @@ fn departure<L: Lanes>(l: L, leaving: &Leaving<L>, i: usize) -> Departure {
     }
 }
 
-/// The closest hits found so far, and where the earliest crossing could be that no bound could
-/// settle.
+/// The closest certain hits so far, and the earliest crossing that could be before them.
 struct Search<L: Lanes> {
-    best: Nearest<L>,
-    error: L::Real,
-    doubt: L::Real,
+    /// Where the closest certain hit is; infinite at first.
+    best: Enclosure<L>,
+    /// Its part; [`NOTHING`] at first.
+    part: L::Int,
+    /// Where the earliest of all other possible crossings could be.
+    rival: L::Real,
 }
 
 impl<L: Lanes> Search<L> {
-    /// Asks one object, for the lanes in `asked`.
+    #[inline(always)]
+    fn new(l: L) -> Self {
+        let infinite = l.real(f64::INFINITY);
+        Self {
+            best: Enclosure {
+                low: infinite,
+                high: infinite,
+            },
+            part: l.int(NOTHING),
+            rival: infinite,
+        }
+    }
+
+    /// Asks one object, for the lanes in `asked`; where that is `None`, for all of them, and what
+    /// is found for lanes without a ray means nothing.
     #[inline(always)]
     fn ask(
         &mut self,
@@ -150,7 +165,7 @@ impl<L: Lanes> Search<L> {
         k: u32,
         ray: &LaneRay<L>,
         leaving: &Leaving<L>,
-        asked: L::Mask,
+        asked: Option<L::Mask>,
     ) {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
@@ -158,14 +173,21 @@ impl<L: Lanes> Search<L> {
         let span = shape.span(l, ray);
         let own = leaving.object.same(index);
         let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
-        let closer = (c.t + c.error).lt(self.best.t - self.error);
-        let farther = (c.t - c.error).gt(self.best.t + self.error);
-        let take = c.hit & closer & asked;
-        let unsettled = (c.undecided | (c.hit & !closer & !farther)) & asked;
-        self.best.t = l.select(take, c.t, self.best.t);
-        self.error = l.select(take, c.error, self.error);
-        self.best.object = l.select_int(take, index, self.best.object);
-        self.doubt = l.select(unsettled, self.doubt.min(c.earliest), self.doubt);
+        let mut possible = c.possible;
+        if let Some(asked) = asked {
+            possible = possible & asked;
+        }
+        if !possible.any() {
+            return;
+        }
+        let take = c.certain & possible & c.at.high.lt(self.best.high);
+        // Of this crossing and the best so far, the one that is not taken remains a rival.
+        let loser = l.select(take, self.best.low, c.at.low);
+        self.rival = l.select(possible, loser.min(self.rival), self.rival);
+        self.best.low = l.select(take, c.at.low, self.best.low);
+        self.best.high = l.select(take, c.at.high, self.best.high);
+        let part = c.part.plus(l.int(model.parts.first[k as usize]));
+        self.part = l.select_int(take, part, self.part);
     }
 
     /// The same as one copy of code, for the hierarchy.
@@ -181,7 +203,7 @@ impl<L: Lanes> Search<L> {
     ) {
         l.vectorize(
             #[inline(always)]
-            || self.ask(l, model, k, ray, leaving, asked),
+            || self.ask(l, model, k, ray, leaving, Some(asked)),
         );
     }
 
@@ -202,7 +224,7 @@ impl<L: Lanes> Search<L> {
         }
         let mut rays = Rounds::new(l, ray, active);
         loop {
-            let limits = array(l, self.best.t + self.error);
+            let limits = array(l, self.best.high);
             let (mut pending, objects) = rays.next(many, active.bits(), &limits);
             if pending == 0 {
                 return;
@@ -293,45 +315,40 @@ pub fn nearest<L: Lanes>(
     l.vectorize(
         #[inline(always)]
         || {
-            let infinite = l.real(f64::INFINITY);
-            let mut search = Search::<L> {
-                best: Nearest {
-                    t: infinite,
-                    object: l.int(NOTHING),
-                },
-                error: l.real(0.0),
-                doubt: infinite,
-            };
+            let mut search = Search::new(l);
             match &model.hierarchy {
                 None => {
                     for k in 0..model.shapes.len() as u32 {
-                        search.ask(l, model, k, ray, leaving, active);
+                        search.ask(l, model, k, ray, leaving, None);
                     }
                 }
                 Some(many) => search.ask_many(l, model, many, ray, leaving, active),
             }
-            let Search {
-                mut best,
-                error,
-                doubt,
-            } = search;
+            let high = search.best.high;
+            let mut best = Nearest {
+                t: (search.best.low + high) * l.real(0.5),
+                part: search.part,
+            };
             rungs.rays += u64::from(active.bits().count_ones());
-            let unsure = active & doubt.le(best.t + error) & !doubt.same(infinite);
+            let unsure = active & search.rival.le(high) & search.rival.lt(l.real(f64::INFINITY));
             rungs.undecided += u64::from(unsure.bits().count_ones());
             for i in each(unsure.bits()) {
-                let candidates = candidates(l, model, ray, i, l.lane(best.t + error, i));
-                let (t, object) = model
-                    .resolver
-                    .nearest(
-                        candidates.as_deref(),
-                        lane_vector(l, ray.origin, i),
-                        lane_vector(l, ray.direction, i),
-                        departure(l, leaving, i),
-                        &mut rungs.ladder,
+                let candidates = candidates(l, model, ray, i, l.lane(high, i));
+                let found = model.resolver.nearest(
+                    candidates.as_deref(),
+                    lane_vector(l, ray.origin, i),
+                    lane_vector(l, ray.direction, i),
+                    departure(l, leaving, i),
+                    &mut rungs.ladder,
+                );
+                let (t, part) = found.map_or((f64::INFINITY, NOTHING), |found| {
+                    (
+                        found.t,
+                        model.parts.first[found.object as usize] + found.part,
                     )
-                    .unwrap_or((f64::INFINITY, NOTHING));
+                });
                 best.t = l.with_lane(best.t, i, L::Scalar::from_f64(t));
-                best.object = l.with_int_lane(best.object, i, object);
+                best.part = l.with_int_lane(best.part, i, part);
             }
             for (object, implicit) in &model.implicits {
                 let index = l.int(*object);
@@ -342,7 +359,8 @@ pub fn nearest<L: Lanes>(
                 let tally = &mut rungs.implicit;
                 let (t, found) = implicit.first_hit(l, ray, start, best.t, active, tally);
                 best.t = l.select(found, t, best.t);
-                best.object = l.select_int(found, index, best.object);
+                let part = l.int(model.parts.first[*object as usize]);
+                best.part = l.select_int(found, part, best.part);
             }
             best
         },
@@ -367,7 +385,7 @@ struct Blocks<L: Lanes> {
 }
 
 impl<L: Lanes> Blocks<L> {
-    /// Asks one object, for the lanes in `asked`.
+    /// Asks one object, for the lanes in `asked`; for all of them where that is `None`.
     #[inline(always)]
     fn ask(
         &mut self,
@@ -376,7 +394,7 @@ impl<L: Lanes> Blocks<L> {
         k: u32,
         shadow: &Shadow<L>,
         leaving: &Leaving<L>,
-        asked: L::Mask,
+        asked: Option<L::Mask>,
     ) {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
@@ -384,9 +402,15 @@ impl<L: Lanes> Blocks<L> {
         let span = shape.span(l, &shadow.ray);
         let own = leaving.object.same(index);
         let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
-        let counted = asked & !shadow.except.same(index);
-        self.blocked = self.blocked | (c.hit & (c.t + c.error).lt(shadow.limit) & counted);
-        self.doubtful = self.doubtful | (c.undecided & c.earliest.lt(shadow.limit) & counted);
+        let mut counted = !shadow.except.same(index) & c.possible;
+        if let Some(asked) = asked {
+            counted = counted & asked;
+        }
+        if !counted.any() {
+            return;
+        }
+        self.blocked = self.blocked | (c.certain & c.at.high.lt(shadow.limit) & counted);
+        self.doubtful = self.doubtful | (c.at.low.lt(shadow.limit) & counted);
     }
 
     /// The same as one copy of code, for the hierarchy.
@@ -402,7 +426,7 @@ impl<L: Lanes> Blocks<L> {
     ) {
         l.vectorize(
             #[inline(always)]
-            || self.ask(l, model, k, shadow, leaving, asked),
+            || self.ask(l, model, k, shadow, leaving, Some(asked)),
         );
     }
 
@@ -417,7 +441,7 @@ impl<L: Lanes> Blocks<L> {
         leaving: &Leaving<L>,
         active: L::Mask,
     ) {
-        for &k in &many.unbounded {
+        for &k in many.unbounded.iter().filter(|k| model.hides(**k)) {
             self.ask_alone(l, model, k, shadow, leaving, active);
         }
         let mut rays = Rounds::new(l, &shadow.ray, active);
@@ -462,8 +486,8 @@ pub fn occluded<L: Lanes>(
             };
             match &model.hierarchy {
                 None => {
-                    for k in 0..model.shapes.len() as u32 {
-                        blocks.ask(l, model, k, shadow, leaving, active);
+                    for &k in &model.occluders {
+                        blocks.ask(l, model, k, shadow, leaving, None);
                     }
                 }
                 Some(many) => blocks.ask_many(l, model, many, shadow, leaving, active),
@@ -493,7 +517,7 @@ pub fn occluded<L: Lanes>(
                 answers |= u32::from(hidden) << i;
             }
             blocked = blocked | l.mask_from_bits(answers);
-            for (object, implicit) in &model.implicits {
+            for (object, implicit) in model.implicits.iter().filter(|(k, _)| model.hides(*k)) {
                 let index = l.int(*object);
                 let start = StartSign {
                     on: leaving.object.same(index),

@@ -10,6 +10,7 @@ pub mod chunk;
 pub mod develop;
 pub mod intersect;
 pub mod model;
+pub mod parts;
 pub mod pool;
 pub mod replay;
 pub mod scatter;

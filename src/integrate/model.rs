@@ -1,7 +1,8 @@
 //! What the loop works on: the scene as flat tables of lane scalars, built by the plan.
 
+use super::parts::Parts;
 use crate::camera::LaneCamera;
-use crate::light::LaneLight;
+use crate::light::{LaneLight, SmallLights};
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Sequence;
 use crate::shape::hierarchy::Hierarchy;
@@ -105,16 +106,29 @@ pub struct Model<T: Scalar> {
     pub hierarchy: Option<Many<T>>,
     /// Placed shapes by object.
     pub shapes: Vec<LaneShape<T>>,
+    /// The objects that shadow rays are tested against, in order.
+    pub occluders: Vec<u32>,
     /// Implicit surfaces: (object, surface).
     pub implicits: Vec<(u32, LaneImplicit<T>)>,
+    /// What hits look like, by part.
+    pub parts: Parts<T>,
     /// Appearance by object.
     pub shading: Vec<ObjectShading<T>>,
     /// Samplable lights.
     pub lights: Vec<LaneLight<T>>,
+    /// The lights once more, where several can be sampled together.
+    pub small_lights: Option<Box<SmallLights<T>>>,
     /// Spectrum of the environment.
     pub environment: Option<u32>,
     /// All spectra on the wavelength grid.
     pub spectra: SpectrumBank<T>,
     /// Decides what lanes cannot.
     pub resolver: Resolver,
+}
+
+impl<T: Scalar> Model<T> {
+    /// Whether an object can hide a light from a surface.
+    pub fn hides(&self, object: u32) -> bool {
+        self.occluders.binary_search(&object).is_ok()
+    }
 }

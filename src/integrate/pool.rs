@@ -5,10 +5,8 @@
 //! the free end, so that lanes stay full. Only what changes places with a path lies in the pool;
 //! its spectra lie in rows by sample ([`Rows`]) and stay where they are.
 
+pub use crate::math::lanes::WIDEST;
 use crate::math::lanes::{Int, Lanes, Mask, Scalar};
-
-/// Most lanes of a packet.
-pub const WIDEST: usize = 16;
 
 /// Real numbers of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,14 +3,14 @@
 use super::bounce::{Step, some_object};
 use super::intersect::{Leaving, NOTHING, Shadow, lane_vector, occluded};
 use super::model::Scatter;
-use super::pool::{WIDEST, any, array, bit_where, each, flags, has};
+use super::pool::{Rows, WIDEST, any, array, bit_where, each, flags, has};
 use super::replay::LightVertex;
 use super::surface::Surfaces;
+use crate::light::Towards;
 use crate::material::fresnel;
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
 use crate::math::vec3::Vec3;
 use crate::sample::Slot;
-use crate::sample::mis::power_weight;
 use crate::sample::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
 use crate::shape::lanes::LaneRay;
 
@@ -24,6 +24,14 @@ struct Incidence<L: Lanes> {
     cosine: L::Real,
     /// Direction of reflection.
     mirrored: Vec3<L::Real>,
+}
+
+/// What arrives from sampled lights.
+struct Lit<L: Lanes> {
+    /// Spectrum of the light.
+    spectrum: L::Int,
+    /// What its spectrum is multiplied with beside throughput and albedo; 0 where it is hidden.
+    weight: L::Real,
 }
 
 /// The scattered rays.
@@ -46,7 +54,6 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         l: L,
         ray: &LaneRay<L>,
         surface: &Surfaces<L>,
-        object: L::Int,
         going: L::Mask,
     ) -> Scattered<L> {
         let needs = self.model.needs;
@@ -64,7 +71,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         if needs.diffuse {
             let diffuse = kind(Scatter::Diffuse);
             if any(diffuse) {
-                self.diffuse(l, surface, object, diffuse, &mut next);
+                self.diffuse(l, surface, diffuse, &mut next);
             }
         }
         if !(needs.conductor || needs.ideal_mirror || needs.glass) {
@@ -129,26 +136,22 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
 
     /// Lambertian reflection: one light, one cosine-distributed direction.
     #[inline(always)]
-    fn diffuse(
-        &mut self,
-        l: L,
-        surface: &Surfaces<L>,
-        object: L::Int,
-        diffuse: L::Mask,
-        next: &mut Scattered<L>,
-    ) {
-        // bsdf · cos / pdf of the cosine-distributed direction is the albedo at every wavelength.
-        self.multiply_by(l, diffuse, surface.spectrum);
+    fn diffuse(&mut self, l: L, surface: &Surfaces<L>, diffuse: L::Mask, next: &mut Scattered<L>) {
         let normal = Vec3::select(l, surface.front, surface.normal, -surface.normal);
-        if !self.model.lights.is_empty() {
+        let sequence = &self.model.sequence;
+        let [u, v] = if self.model.lights.is_empty() {
+            self.multiply_by(l, diffuse, surface.spectrum);
+            sequence.pair(l, self.id, Slot::Bsdf, self.depth)
+        } else {
+            let [light, bsdf] = sequence.two_pairs(l, self.id, Slot::Light, Slot::Bsdf, self.depth);
             let leaving = Leaving {
-                object,
+                object: surface.object,
                 inward: next.inward,
             };
-            self.lights(l, surface.point, normal, &leaving, diffuse);
-        }
-        let slot = Slot::Bsdf.at(l, self.depth);
-        let [u, v] = self.model.sequence.pair(l, self.id, slot);
+            let lit = self.lights(l, surface.point, normal, &leaving, diffuse, light);
+            self.reflect(l, diffuse, surface.spectrum, &lit);
+            bsdf
+        };
         let local = cosine_hemisphere(l, u, v);
         let (s, t) = normal.frame(l);
         let direction = normal.scale(local.z).along(s, local.x).along(t, local.y);
@@ -157,7 +160,37 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         next.specular = next.specular & !diffuse;
     }
 
-    /// Next-event estimation with the albedo already in the throughput.
+    /// Multiplies the throughput by the albedo, which is bsdf · cos / pdf of the cosine-distributed
+    /// direction at every wavelength, and adds the light that came that way from a sampled light.
+    #[inline(always)]
+    fn reflect(&mut self, l: L, m: L::Mask, albedo: L::Int, lit: &Lit<L>) {
+        let (albedos, emissions) = (self.table_rows(l, albedo), self.table_rows(l, lit.spectrum));
+        let weights = array(l, lit.weight);
+        let table = self.model.spectra.rows::<C>();
+        let Rows {
+            throughput,
+            radiance,
+            ..
+        } = &mut *self.rows;
+        for i in each(m.bits()) {
+            let slot = self.slots[i % WIDEST] as usize;
+            // Copies: arrays that cannot overlap become vectors.
+            let (albedo, emission) = (
+                table[albedos[i % WIDEST] as usize],
+                table[emissions[i % WIDEST] as usize],
+            );
+            let (carried, sum) = (&mut throughput[slot], &mut radiance[slot]);
+            let (mut own, mut total) = (*carried, *sum);
+            let weight = weights[i % WIDEST];
+            for c in 0..C {
+                own[c] = own[c] * albedo[c];
+                total[c] = (own[c] * weight).fused(emission[c], total[c]);
+            }
+            (*carried, *sum) = (own, total);
+        }
+    }
+
+    /// Next-event estimation: what arrives from one light a lane.
     #[inline(always)]
     fn lights(
         &mut self,
@@ -166,53 +199,78 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         normal: Vec3<L::Real>,
         leaving: &Leaving<L>,
         diffuse: L::Mask,
-    ) {
+        numbers: [L::Real; 2],
+    ) -> Lit<L> {
         let model = self.model;
         let zero = l.real(0.0);
-        let slot = Slot::Light.at(l, self.depth);
-        let pair = model.sequence.pair(l, self.id, slot);
-        let mut chosen = l.int(0);
-        if model.lights.len() > 1 {
-            let slot = Slot::Choice.at(l, self.depth);
-            let u = model.sequence.single(l, self.id, slot);
-            for (k, light) in model.lights.iter().enumerate().skip(1) {
-                let here = u.ge(l.splat(light.below));
-                chosen = l.select_int(here, l.int(k as u32), chosen);
-            }
-        }
-        let mut direction = normal;
-        let mut distance = zero;
-        let mut weight = zero;
+        let chosen = self.choose_light(l);
+        let mut towards = Towards::<L> {
+            direction: normal,
+            distance: zero,
+            pdf: zero,
+            valid: l.mask(false),
+        };
         let mut spectrum = l.int(0);
         let mut except = l.int(NOTHING);
-        let mut pending = diffuse.bits();
+        let mut extended = l.mask(true);
+        let mut left = diffuse;
+        if let Some(table) = &model.small_lights {
+            let spheres = diffuse & l.lookup_int(&table.is_sphere, chosen).same(l.int(1));
+            if any(spheres) {
+                let own = table
+                    .spheres
+                    .at(l, chosen)
+                    .sample(l, point, numbers, spheres);
+                towards = Towards {
+                    pdf: own.pdf * l.lookup(&table.probability, chosen),
+                    valid: spheres & own.valid,
+                    ..own
+                };
+                spectrum = l.lookup_int(&table.spectrum, chosen);
+                except = l.lookup_int(&table.object, chosen);
+                left = diffuse & !spheres;
+            }
+        }
+        let mut pending = left.bits();
         while pending != 0 {
             let k = l.int_lane(chosen, pending.trailing_zeros() as usize);
             let here = diffuse & chosen.same(l.int(k));
             pending &= !here.bits();
             let light = &model.lights[k as usize];
-            let towards = light.shape.sample(l, point, pair);
-            let cosine = towards.direction.dot(normal);
-            let valid = here & towards.valid & cosine.gt(zero);
-            let scattering = cosine_hemisphere_pdf(l, cosine);
-            let pdf = towards.pdf * l.splat(light.probability);
-            let mis = if light.shape.has_extent() {
-                power_weight(l, pdf, scattering)
-            } else {
-                l.real(1.0)
-            };
-            direction = Vec3::select(l, valid, towards.direction, direction);
-            distance = l.select(valid, towards.distance, distance);
-            weight = l.select(valid, scattering * mis / pdf, weight);
+            let own = light.shape.sample(l, point, numbers);
+            let pdf = own.pdf * l.splat(light.probability);
+            towards.direction = Vec3::select(l, here, own.direction, towards.direction);
+            towards.distance = l.select(here, own.distance, towards.distance);
+            towards.pdf = l.select(here, pdf, towards.pdf);
+            towards.valid = towards.valid | (here & own.valid);
             spectrum = l.select_int(here, l.int(light.spectrum), spectrum);
             except = l.select_int(here, l.int(light.object), except);
+            if !light.shape.has_extent() {
+                extended = extended & !here;
+            }
         }
-        let asked = diffuse & weight.gt(zero);
+        let Towards {
+            direction,
+            distance,
+            pdf,
+            valid,
+        } = towards;
+        let cosine = direction.dot(normal);
+        // With q the ratio of the densities, the power heuristic is 1/(1 + q²) (see `sample::mis`),
+        // and bsdf · cos/pdf is q times the albedo.
+        let ratio = cosine_hemisphere_pdf(l, cosine) / pdf;
+        let shared = ratio / ratio.mul_add(ratio, l.real(1.0));
+        let weight = l.select(extended, shared, ratio);
+        let asked = diffuse & valid & cosine.gt(zero) & weight.gt(zero);
+        let mut lit = Lit {
+            spectrum,
+            weight: zero,
+        };
         if !any(asked) {
-            return;
+            return lit;
         }
         let shadow = Shadow {
-            ray: LaneRay::new(point, direction),
+            ray: LaneRay::new(l, point, direction),
             limit: distance,
             except,
         };
@@ -228,7 +286,25 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
                 blocked: blocked.bits() & 1 == 1,
             });
         }
-        self.add(l, asked & !blocked, spectrum, weight);
+        lit.weight = l.select(asked & !blocked, weight, zero);
+        lit
+    }
+
+    /// The number of each lane's light, by the lights' probabilities.
+    #[inline(always)]
+    fn choose_light(&self, l: L) -> L::Int {
+        let mut chosen = l.int(0);
+        if let [_, others @ ..] = self.model.lights.as_slice()
+            && !others.is_empty()
+        {
+            let sequence = &self.model.sequence;
+            let u = sequence.single(l, self.id, Slot::Choice, self.depth);
+            for (k, light) in others.iter().enumerate() {
+                let here = u.ge(l.splat(light.below));
+                chosen = l.select_int(here, l.int(k as u32 + 1), chosen);
+            }
+        }
+        chosen
     }
 
     /// Reflection or refraction at glass, chosen by the mean reflectance over the wavelengths
@@ -248,8 +324,11 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let front = surface.front.bits();
         let cosines = array(l, incidence.cosine);
         let at = self.table_rows(l, surface.spectrum);
-        let slot = Slot::Choice.at(l, self.depth);
-        let variates = array(l, self.model.sequence.single(l, self.id, slot));
+        let variates = self
+            .model
+            .sequence
+            .single(l, self.id, Slot::Choice, self.depth);
+        let variates = array(l, variates);
         let mut etas = [one; WIDEST];
         let mut refracts = 0;
         let mut ends = 0;

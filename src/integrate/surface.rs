@@ -1,11 +1,13 @@
 //! What a packet of hits looks like: geometry, appearance, emission.
 
-use super::intersect::Nearest;
+use super::intersect::{NOTHING, Nearest};
 use super::model::{Model, Scatter};
-use super::pool::any;
+use super::parts::{Entry, NO_LIGHT, SmallTable, word};
+use super::pool::has;
 use crate::math::lanes::{Int, Lanes, Mask, Real, inlined};
 use crate::math::vec3::Vec3;
 use crate::sample::mis::power_weight;
+use crate::shape::lanes::part::Outline;
 use crate::shape::lanes::{LaneRay, LaneSurface};
 
 /// The surfaces that a packet of rays has met.
@@ -13,6 +15,8 @@ use crate::shape::lanes::{LaneRay, LaneSurface};
 pub struct Surfaces<L: Lanes> {
     /// Points, moved onto the surface.
     pub point: Vec3<L::Real>,
+    /// Objects; [`super::intersect::NOTHING`] where nothing is met.
+    pub object: L::Int,
     /// Unit outward normals (+z side of flat shapes).
     pub normal: Vec3<L::Real>,
     /// The ray meets the outward side.
@@ -42,7 +46,20 @@ pub struct Arrival<L: Lanes> {
     pub specular: L::Mask,
 }
 
-/// Gathers what the loop needs to know about each hit, one distinct object at a time.
+/// What the hits' parts say, before the lanes' own points come in.
+struct Gathered<L: Lanes> {
+    vector: Vec3<L::Real>,
+    level: L::Real,
+    half: L::Real,
+    object: L::Int,
+    word: L::Int,
+    spectrum: L::Int,
+    extinction: L::Int,
+    emission: L::Int,
+    light: L::Int,
+}
+
+/// Gathers what the loop needs to know about each hit.
 #[inline(never)]
 pub fn surfaces<L: Lanes>(
     l: L,
@@ -55,80 +72,222 @@ pub fn surfaces<L: Lanes>(
     l.vectorize(
         #[inline(always)]
         || {
-            let zero = l.real(0.0);
-            let one = l.real(1.0);
-            let nowhere = Vec3::new(zero, zero, one);
-            let mut out = Surfaces::<L> {
-                point: nowhere,
-                normal: nowhere,
-                front: l.mask(false),
-                scatter: l.int(Scatter::Black as u32),
-                spectrum: l.int(0),
-                extinction: l.int(0),
-                disperses: l.mask(false),
-                emits: l.mask(false),
-                emission: l.int(0),
-                emission_weight: one,
+            let p = ray.origin.along(ray.direction, nearest.t);
+            let parts = &model.parts;
+            let gathered = match &parts.small {
+                Some(table) => looked_up(l, table, nearest.part, parts.words, hit),
+                None => one_by_one(l, &parts.entries, nearest.part, hit),
             };
-            let mut pending = hit.bits();
-            while pending != 0 {
-                let k = l.int_lane(nearest.object, pending.trailing_zeros() as usize);
-                let here = hit & nearest.object.same(l.int(k));
-                pending &= !here.bits();
-                let shape = &model.shapes[k as usize];
-                let shading = &model.shading[k as usize];
-                let p = ray.origin.along(ray.direction, nearest.t);
-                let LaneSurface { point, normal } = if shape.kind.is_some() {
-                    shape.surface(l, p)
-                } else {
-                    implicit_surface(l, model, k, p, ray.direction, here)
-                };
-                let front = normal.dot(ray.direction).lt(zero);
-                out.point = Vec3::select(l, here, point, out.point);
-                out.normal = Vec3::select(l, here, normal, out.normal);
-                out.front = out.front | (here & front);
-                out.scatter = l.select_int(here, l.int(shading.scatter as u32), out.scatter);
-                let mut spectrum = l.int(shading.spectrum);
-                if let Some(checker) = &shading.checker {
-                    let cell = inlined(
-                        #[inline(always)]
-                        |x: L::Real, frequency| (x * l.splat(frequency)).floor(),
-                    );
-                    let [fx, fy, fz] = checker.frequency;
-                    let local = shape.local(l, point);
-                    let half =
-                        (cell(local.x, fx) + cell(local.y, fy) + cell(local.z, fz)) * l.real(0.5);
-                    let odd = !half.same(half.floor());
-                    spectrum = l.select_int(odd, l.int(checker.odd), spectrum);
-                }
-                out.spectrum = l.select_int(here, spectrum, out.spectrum);
-                if model.needs.conductor {
-                    out.extinction = l.select_int(here, l.int(shading.extinction), out.extinction);
-                }
-                if shading.disperses {
-                    out.disperses = out.disperses | here;
-                }
-                if let Some(emission) = shading.emission {
-                    let emits = here
-                        & ((front & l.mask(shading.emits[0]))
-                            | (!front & l.mask(shading.emits[1])));
-                    out.emits = out.emits | emits;
-                    out.emission = l.select_int(emits, l.int(emission), out.emission);
-                    if let Some(index) = shading.light
-                        && any(emits & !arrival.specular)
-                    {
-                        let light = &model.lights[index as usize];
-                        let chosen = l.splat(light.probability)
-                            * light.shape.pdf(l, ray.origin, ray.direction, normal);
-                        let weight = power_weight(l, arrival.pdf, chosen);
-                        let weighted = emits & !arrival.specular;
-                        out.emission_weight = l.select(weighted, weight, out.emission_weight);
+            let nobody = l.mask(false);
+            let has = inlined(
+                #[inline(always)]
+                |bit: u32| {
+                    if parts.words & bit == 0 {
+                        nobody
+                    } else {
+                        hit & has(l, gathered.word, bit)
                     }
-                }
-            }
+                },
+            );
+            let outline = Outline {
+                vector: gathered.vector,
+                level: gathered.level,
+                half: gathered.half,
+                faces: has(word::FACES),
+                balls: has(word::BALL),
+            };
+            let LaneSurface { point, normal } = outline.surface(l, p);
+            let mut out = Surfaces::<L> {
+                point,
+                normal,
+                object: l.select_int(hit, gathered.object, l.int(NOTHING)),
+                front: nobody,
+                scatter: l.select_int(
+                    hit,
+                    gathered.word & l.int(word::SCATTER),
+                    l.int(Scatter::Black as u32),
+                ),
+                spectrum: gathered.spectrum,
+                extinction: gathered.extinction,
+                disperses: has(word::DISPERSES),
+                emits: nobody,
+                emission: gathered.emission,
+                emission_weight: l.real(1.0),
+            };
+            others(l, model, [p, ray.direction], has(word::OTHER), &mut out);
+            let front = out.normal.dot(ray.direction).lt(l.real(0.0));
+            out.front = hit & front;
+            out.emits = (has(word::EMITS_FRONT) & front) | (has(word::EMITS_BACK) & !front);
+            checkers(l, model, has(word::CHECKER), &mut out);
+            let weighted = out.emits & !arrival.specular & !gathered.light.same(l.int(NO_LIGHT));
+            for_each_distinct(
+                l,
+                gathered.light,
+                weighted,
+                #[inline(always)]
+                |k, here| {
+                    let light = &model.lights[k as usize];
+                    let chosen = l.splat(light.probability)
+                        * light.shape.pdf(l, ray.origin, ray.direction, out.normal);
+                    let weight = power_weight(l, arrival.pdf, chosen);
+                    out.emission_weight = l.select(here, weight, out.emission_weight);
+                },
+            );
             out
         },
     )
+}
+
+/// Calls `f` with each value that occurs in the lanes of `m`, and where it does.
+#[inline(always)]
+fn for_each_distinct<L: Lanes>(l: L, values: L::Int, m: L::Mask, mut f: impl FnMut(u32, L::Mask)) {
+    let mut pending = m.bits();
+    while pending != 0 {
+        let value = l.int_lane(values, pending.trailing_zeros() as usize);
+        let here = m & values.same(l.int(value));
+        pending &= !here.bits();
+        f(value, here);
+    }
+}
+
+/// All lanes at once, from a table that fits in registers.
+#[inline(always)]
+fn looked_up<L: Lanes>(
+    l: L,
+    table: &SmallTable<L::Scalar>,
+    part: L::Int,
+    words: u32,
+    hit: L::Mask,
+) -> Gathered<L> {
+    let zero = l.int(0);
+    // Lanes that have hit nothing read some entry, and what it says is not used.
+    let part = l.select_int(hit, part, zero);
+    let [x, y, z] = &table.vector;
+    let emits = words & (word::EMITS_FRONT | word::EMITS_BACK) != 0;
+    Gathered {
+        vector: Vec3::new(l.lookup(x, part), l.lookup(y, part), l.lookup(z, part)),
+        level: l.lookup(&table.level, part),
+        half: if words & word::FACES == 0 {
+            l.real(0.0)
+        } else {
+            l.lookup(&table.half, part)
+        },
+        object: l.lookup_int(&table.object, part),
+        word: l.lookup_int(&table.word, part),
+        spectrum: l.lookup_int(&table.spectrum, part),
+        extinction: l.lookup_int(&table.extinction, part),
+        emission: if emits {
+            l.lookup_int(&table.emission, part)
+        } else {
+            zero
+        },
+        light: if emits {
+            l.lookup_int(&table.light, part)
+        } else {
+            l.int(NO_LIGHT)
+        },
+    }
+}
+
+/// One distinct part at a time.
+#[inline(always)]
+fn one_by_one<L: Lanes>(
+    l: L,
+    entries: &[Entry<L::Scalar>],
+    part: L::Int,
+    hit: L::Mask,
+) -> Gathered<L> {
+    let (nothing, none) = (l.real(0.0), l.int(0));
+    let mut out = Gathered::<L> {
+        vector: Vec3::new(nothing, nothing, l.real(1.0)),
+        level: nothing,
+        half: nothing,
+        object: none,
+        word: none,
+        spectrum: none,
+        extinction: none,
+        emission: none,
+        light: l.int(NO_LIGHT),
+    };
+    for_each_distinct(
+        l,
+        part,
+        hit,
+        #[inline(always)]
+        |k, here| {
+            let entry = &entries[k as usize];
+            let [x, y, z] = entry.part.vector;
+            let vector = Vec3::new(l.splat(x), l.splat(y), l.splat(z));
+            out.vector = Vec3::select(l, here, vector, out.vector);
+            out.level = l.select(here, l.splat(entry.part.level), out.level);
+            out.half = l.select(here, l.splat(entry.part.half), out.half);
+            for (value, own) in [
+                (&mut out.object, entry.object),
+                (&mut out.word, entry.word),
+                (&mut out.spectrum, entry.spectrum),
+                (&mut out.extinction, entry.extinction),
+                (&mut out.emission, entry.emission),
+                (&mut out.light, entry.light),
+            ] {
+                *value = l.select_int(here, l.int(own), *value);
+            }
+        },
+    );
+    out
+}
+
+/// The surfaces of shapes that no few numbers describe, met at `p` in the directions `d`.
+#[inline(always)]
+fn others<L: Lanes>(
+    l: L,
+    model: &Model<L::Scalar>,
+    [p, d]: [Vec3<L::Real>; 2],
+    m: L::Mask,
+    out: &mut Surfaces<L>,
+) {
+    let objects = out.object;
+    for_each_distinct(
+        l,
+        objects,
+        m,
+        #[inline(always)]
+        |k, here| {
+            let shape = &model.shapes[k as usize];
+            let surface = if shape.kind.is_some() {
+                shape.surface(l, p)
+            } else {
+                implicit_surface(l, model, k, p, d, here)
+            };
+            out.point = Vec3::select(l, here, surface.point, out.point);
+            out.normal = Vec3::select(l, here, surface.normal, out.normal);
+        },
+    );
+}
+
+/// Chooses between the two spectra of checkerboards.
+#[inline(always)]
+fn checkers<L: Lanes>(l: L, model: &Model<L::Scalar>, checkered: L::Mask, out: &mut Surfaces<L>) {
+    let (objects, point) = (out.object, out.point);
+    for_each_distinct(
+        l,
+        objects,
+        checkered,
+        #[inline(always)]
+        |k, here| {
+            let Some(checker) = &model.shading[k as usize].checker else {
+                return;
+            };
+            let cell = inlined(
+                #[inline(always)]
+                |x: L::Real, frequency| (x * l.splat(frequency)).floor(),
+            );
+            let [fx, fy, fz] = checker.frequency;
+            let local = model.shapes[k as usize].local(l, point);
+            let half = (cell(local.x, fx) + cell(local.y, fy) + cell(local.z, fz)) * l.real(0.5);
+            let odd = here & !half.same(half.floor());
+            out.spectrum = l.select_int(odd, l.int(checker.odd), out.spectrum);
+        },
+    );
 }
 
 /// An implicit surface's outward normal; finite everywhere.

@@ -2,6 +2,7 @@
 
 mod cube;
 mod rectangle;
+mod small;
 mod sphere;
 
 use glam::DVec3;
@@ -12,7 +13,8 @@ use crate::sample::warp::square_to_disk;
 
 pub use cube::CubeLight;
 pub use rectangle::RectangleLight;
-pub use sphere::SphereLight;
+pub use small::SmallLights;
+pub use sphere::{SphereLight, SphereTable};
 
 /// A sampled direction towards a light.
 #[derive(Clone, Copy)]
@@ -236,6 +238,5 @@ fn by_area<L: Lanes>(
 /// Density in solid angle of uniform sampling of a plane area A: d²/(A |cos|) with d = h/cos.
 #[inline(always)]
 fn area_pdf<R: Real>(cosine: R, height: R, inverse_area: R) -> R {
-    let distance = height / cosine;
-    distance * distance / cosine.abs() * inverse_area
+    height * height * inverse_area / (cosine * cosine * cosine.abs())
 }

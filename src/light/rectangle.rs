@@ -19,6 +19,7 @@ pub struct RectangleLight<T> {
     normal: [T; 3],
     half: [T; 2],
     inverse_area: T,
+    inverse_root_area: T,
     near_squared: T,
     emits: [bool; 2],
 }
@@ -46,6 +47,7 @@ impl<T: Scalar> RectangleLight<T> {
             normal: normal.to_array().map(T::from_f64),
             half: lengths.map(T::from_f64),
             inverse_area: T::from_f64(1.0 / area),
+            inverse_root_area: T::from_f64(1.0 / area.sqrt()),
             near_squared: T::from_f64(4.0 * area),
             emits,
         }
@@ -76,21 +78,31 @@ impl<T: Scalar> RectangleLight<T> {
             near,
         };
         if near.any() {
-            let zz = z * z;
+            // In units of the root of the area, so that no product leaves the range of numbers.
+            let unit = l.splat(self.inverse_root_area);
+            let (x, y) = ([x[0] * unit, x[1] * unit], [y[0] * unit, y[1] * unit]);
+            let (zz, depth) = (z * unit * (z * unit), -(z * unit));
+            // cos and sin of a corner's angle, times a common factor.
             let corner = inlined(
                 #[inline(always)]
-                |x: L::Real, y: L::Real, sign: f64| {
+                |x: L::Real, y: L::Real| {
                     let r = x.mul_add(x, y.mul_add(y, zz)).sqrt();
-                    atan2_turns(l, -(z * r), x * y * l.real(sign))
+                    (x * y, depth * r)
                 },
             );
-            let g0 = corner(x[1], y[0], 1.0);
-            let g1 = corner(x[1], y[1], -1.0);
-            let g2 = corner(x[0], y[1], 1.0);
-            let g3 = corner(x[0], y[0], -1.0);
-            seen.corners = g2 + g3;
-            seen.turns = (g0 + g1) - (l.real(1.0) - seen.corners);
-            // Below 0.01 sr the difference has lost too much: 4 angles to 2⁻²⁵ turns each are
+            // The angle of (c₀ + i s₀)(−c₁ + i s₁), a sum of two angles in [0, ½] turns.
+            let sum = inlined(
+                #[inline(always)]
+                |(c0, s0): (L::Real, L::Real), (c1, s1): (L::Real, L::Real)| {
+                    let cosine = -c0.mul_add(c1, s0 * s1);
+                    let turns = atan2_turns(l, c0.mul_add(s1, -(s0 * c1)), cosine);
+                    l.select(turns.lt(l.real(0.0)), turns + l.real(1.0), turns)
+                },
+            );
+            seen.corners = sum(corner(x[0], y[1]), corner(x[0], y[0]));
+            let others = sum(corner(x[1], y[0]), corner(x[1], y[1]));
+            seen.turns = others - (l.real(1.0) - seen.corners);
+            // Below 0.01 sr the difference has lost too much: 2 sums of angles to 2⁻²⁴ turns each are
             // within 7.5e-5 of it.
             let least: L::Real = l.real(0.01 / std::f64::consts::TAU);
             seen.near = near & least.lt(seen.turns);

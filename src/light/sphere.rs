@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::{Towards, vector};
 use crate::math::functions::sin_cos_turns;
-use crate::math::lanes::{Lanes, Mask, Real, Scalar};
+use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
+use crate::math::lookup::SMALL;
 use crate::math::vec3::Vec3;
 use crate::sample::warp::uniform_sphere;
 
@@ -15,14 +16,72 @@ use crate::sample::warp::uniform_sphere;
 pub struct SphereLight<T> {
     centre: [T; 3],
     radius: T,
-    radius_squared: T,
     /// Squared distance from the centre up to which a receiver counts as inside.
     inside_squared: T,
-    inverse_area: T,
     emits: [bool; 2],
 }
 
-/// The cone of directions in which a receiver sees the sphere.
+/// Spheres, one a lane.
+#[derive(Clone, Copy)]
+pub struct Spheres<L: Lanes> {
+    centre: Vec3<L::Real>,
+    radius: L::Real,
+    inside_squared: L::Real,
+    emits: [L::Mask; 2],
+}
+
+/// A few spheres by number, to be looked up lane by lane.
+#[derive(Debug, Clone)]
+pub struct SphereTable<T> {
+    centre: [[T; SMALL]; 3],
+    radius: [T; SMALL],
+    inside_squared: [T; SMALL],
+    /// Whether front and back emit, as bits.
+    emits: [u32; SMALL],
+}
+
+impl<T: Scalar> Default for SphereTable<T> {
+    fn default() -> Self {
+        let zeros = [T::default(); SMALL];
+        Self {
+            centre: [zeros; 3],
+            radius: zeros,
+            inside_squared: zeros,
+            emits: [0; SMALL],
+        }
+    }
+}
+
+impl<T: Scalar> SphereTable<T> {
+    /// Puts a sphere at number `k`.
+    pub fn set(&mut self, k: usize, light: &SphereLight<T>) {
+        for (column, x) in self.centre.iter_mut().zip(light.centre) {
+            column[k] = x;
+        }
+        self.radius[k] = light.radius;
+        self.inside_squared[k] = light.inside_squared;
+        self.emits[k] = u32::from(light.emits[0]) | u32::from(light.emits[1]) << 1;
+    }
+
+    /// Each lane's sphere.
+    #[inline(always)]
+    pub fn at<L: Lanes<Scalar = T>>(&self, l: L, k: L::Int) -> Spheres<L> {
+        let [x, y, z] = &self.centre;
+        let emits = l.lookup_int(&self.emits, k);
+        let side = inlined(
+            #[inline(always)]
+            |bit: u32| !(emits & l.int(bit)).same(l.int(0)),
+        );
+        Spheres {
+            centre: Vec3::new(l.lookup(x, k), l.lookup(y, k), l.lookup(z, k)),
+            radius: l.lookup(&self.radius, k),
+            inside_squared: l.lookup(&self.inside_squared, k),
+            emits: [side(1), side(2)],
+        }
+    }
+}
+
+/// The cone of directions in which a receiver sees a sphere.
 struct Cone<L: Lanes> {
     to: Vec3<L::Real>,
     squared: L::Real,
@@ -48,72 +107,31 @@ impl<T: Scalar> SphereLight<T> {
         Self {
             centre: centre.to_array().map(T::from_f64),
             radius: T::from_f64(radius),
-            radius_squared: T::from_f64(radius * radius),
             inside_squared: T::from_f64(radius * radius * (1.0 + margin)),
-            inverse_area: T::from_f64(1.0 / (4.0 * std::f64::consts::PI * radius * radius)),
             emits,
         }
     }
 
+    /// The same sphere in every lane.
     #[inline(always)]
-    fn cone<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> Cone<L> {
-        let to = vector(l, &self.centre) - p;
-        let squared = to.length_squared();
-        let sine_squared = l.splat(self.radius_squared) / squared;
-        let one = l.real(1.0);
-        let cosine = (one - sine_squared).max(l.real(0.0)).sqrt();
-        Cone {
-            to,
-            squared,
-            height: sine_squared / (one + cosine),
-            outside: squared.gt(l.splat(self.inside_squared)),
+    fn everywhere<L: Lanes<Scalar = T>>(&self, l: L) -> Spheres<L> {
+        Spheres {
+            centre: vector(l, &self.centre),
+            radius: l.splat(self.radius),
+            inside_squared: l.splat(self.inside_squared),
+            emits: [l.mask(self.emits[0]), l.mask(self.emits[1])],
         }
     }
 
     /// A direction from p.
-    #[inline(never)]
+    #[inline(always)]
     pub fn sample<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         p: Vec3<L::Real>,
-        [u, v]: [L::Real; 2],
+        numbers: [L::Real; 2],
     ) -> Towards<L> {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let one = l.real(1.0);
-                let zero = l.real(0.0);
-                let cone = self.cone(l, p);
-                // By area, as seen from inside.
-                let w = uniform_sphere(l, u, v);
-                let to = cone.to.along(w, l.splat(self.radius));
-                let from_inside = to.length_squared().sqrt();
-                let inward = to.scale(one / from_inside);
-                // In the cone: 1 − cos θ uniform.
-                let height = u * cone.height;
-                let cosine = one - height;
-                let sine_squared = height * (one + cosine);
-                let (s, c) = sin_cos_turns(l, v);
-                let sine = sine_squared.sqrt();
-                let axis = cone.to.scale(one / cone.squared.sqrt());
-                let (a, b) = axis.frame(l);
-                let outward = axis.scale(cosine).along(a, sine * c).along(b, sine * s);
-                let direction = Vec3::select(l, cone.outside, outward, inward);
-                // Nearer crossing: d cos θ − √(r² − d² sin² θ).
-                let half = (-cone.squared)
-                    .mul_add(sine_squared, l.splat(self.radius_squared))
-                    .max(zero)
-                    .sqrt();
-                let distance = cone.squared.sqrt().mul_add(cosine, -half);
-                Towards {
-                    direction,
-                    distance: l.select(cone.outside, distance, from_inside),
-                    pdf: self.density(l, &cone, direction),
-                    valid: (cone.outside & l.mask(self.emits[0]))
-                        | (!cone.outside & l.mask(self.emits[1])),
-                }
-            },
-        )
+        self.everywhere(l).sample(l, p, numbers, l.mask(true))
     }
 
     /// Density of [`Self::sample`].
@@ -126,7 +144,72 @@ impl<T: Scalar> SphereLight<T> {
     ) -> L::Real {
         l.vectorize(
             #[inline(always)]
-            || self.density(l, &self.cone(l, p), direction),
+            || {
+                let spheres = self.everywhere(l);
+                spheres.density(l, &spheres.cone(l, p), direction, l.mask(true))
+            },
+        )
+    }
+}
+
+impl<L: Lanes> Spheres<L> {
+    #[inline(always)]
+    fn cone(&self, l: L, p: Vec3<L::Real>) -> Cone<L> {
+        let to = self.centre - p;
+        let squared = to.length_squared();
+        let sine_squared = self.radius * self.radius / squared;
+        let one = l.real(1.0);
+        let cosine = (one - sine_squared).max(l.real(0.0)).sqrt();
+        Cone {
+            to,
+            squared,
+            height: sine_squared / (one + cosine),
+            outside: squared.gt(self.inside_squared),
+        }
+    }
+
+    /// A direction from p; what is said of lanes outside of `m` means nothing.
+    #[inline(never)]
+    pub fn sample(&self, l: L, p: Vec3<L::Real>, [u, v]: [L::Real; 2], m: L::Mask) -> Towards<L> {
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let one = l.real(1.0);
+                let zero = l.real(0.0);
+                let cone = self.cone(l, p);
+                // In the cone: 1 − cos θ uniform.
+                let height = u * cone.height;
+                let cosine = one - height;
+                let sine_squared = height * (one + cosine);
+                let (s, c) = sin_cos_turns(l, v);
+                let sine = sine_squared.sqrt();
+                let far = cone.squared.sqrt();
+                let axis = cone.to.scale(one / far);
+                let (a, b) = axis.frame(l);
+                let mut direction = axis.scale(cosine).along(a, sine * c).along(b, sine * s);
+                // Nearer crossing: d cos θ − √(r² − d² sin² θ).
+                let half = (-cone.squared)
+                    .mul_add(sine_squared, self.radius * self.radius)
+                    .max(zero)
+                    .sqrt();
+                let mut distance = far.mul_add(cosine, -half);
+                let inside = m & !cone.outside;
+                if inside.any() {
+                    // By area.
+                    let w = uniform_sphere(l, u, v);
+                    let to = cone.to.along(w, self.radius);
+                    let from_inside = to.length_squared().sqrt();
+                    let inward = to.scale(one / from_inside);
+                    direction = Vec3::select(l, inside, inward, direction);
+                    distance = l.select(inside, from_inside, distance);
+                }
+                Towards {
+                    direction,
+                    distance,
+                    pdf: self.density(l, &cone, direction, m),
+                    valid: (cone.outside & self.emits[0]) | (self.emits[1] & !cone.outside),
+                }
+            },
         )
     }
 
@@ -134,25 +217,20 @@ impl<T: Scalar> SphereLight<T> {
     /// cos = √(r² − b²)/r for a line that passes the centre at distance b, and t the larger root of
     /// t² − 2t (to · ω) = r² − |to|² in whichever form adds.
     #[inline(always)]
-    fn density<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        cone: &Cone<L>,
-        direction: Vec3<L::Real>,
-    ) -> L::Real {
+    fn density(&self, l: L, cone: &Cone<L>, direction: Vec3<L::Real>, m: L::Mask) -> L::Real {
         let uniform = cone_pdf(l, cone.height);
-        if !(!cone.outside).any() {
+        if !(m & !cone.outside).any() {
             return uniform;
         }
         let zero = l.real(0.0);
+        let radius_squared = self.radius * self.radius;
         let ahead = cone.to.dot(direction);
         let foot = cone.to.along(direction, -ahead);
-        let half = (l.splat(self.radius_squared) - foot.length_squared())
-            .max(zero)
-            .sqrt();
-        let depth = (l.splat(self.radius_squared) - cone.squared).max(zero);
+        let half = (radius_squared - foot.length_squared()).max(zero).sqrt();
+        let depth = (radius_squared - cone.squared).max(zero);
         let t = l.select(ahead.gt(zero), half + ahead, depth / (half - ahead));
-        let by_area = t * t * l.splat(self.radius) / half * l.splat(self.inverse_area);
+        let area = radius_squared * l.real(4.0 * std::f64::consts::PI);
+        let by_area = t * t * self.radius / (half * area);
         l.select(cone.outside, uniform, by_area)
     }
 }

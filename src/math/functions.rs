@@ -49,6 +49,23 @@ pub(super) const COS: [f64; 9] = [
     1.0 / 20_922_789_888_000.0,
 ];
 
+/// (sin x, cos x) for |x| ≤ π/4 by Taylor series in x².
+#[inline(always)]
+fn near_zero<L: Lanes>(l: L, x: L::Real) -> (L::Real, L::Real) {
+    let xx = x * x;
+    let (sines, cosines) = if single::<L>() { (5, 6) } else { (9, 9) };
+    (
+        polynomial(l, xx, &SIN[..sines]) * x,
+        polynomial(l, xx, &COS[..cosines]),
+    )
+}
+
+/// (sin 2πu, cos 2πu) for |u| ≤ 1/8: [`sin_cos_turns`] where no range is to be reduced.
+#[inline(always)]
+pub fn sin_cos_eighth<L: Lanes>(l: L, u: L::Real) -> (L::Real, L::Real) {
+    near_zero(l, u * l.real(std::f64::consts::TAU))
+}
+
 /// (sin 2πu, cos 2πu) for |u| ≤ 2.
 ///
 /// u = q/4 + r with |r| ≤ 1/8 exactly; Taylor series in (2πr)². Remainders at 2πr = π/4: single
@@ -58,10 +75,7 @@ pub(super) const COS: [f64; 9] = [
 pub fn sin_cos_turns<L: Lanes>(l: L, u: L::Real) -> (L::Real, L::Real) {
     let quarter = (u * l.real(4.0)).round();
     let x = quarter.mul_add(l.real(-0.25), u) * l.real(std::f64::consts::TAU);
-    let xx = x * x;
-    let terms = if single::<L>() { 5 } else { 9 };
-    let s = polynomial(l, xx, &SIN[..terms]) * x;
-    let c = polynomial(l, xx, &COS[..if single::<L>() { 6 } else { 9 }]);
+    let (s, c) = near_zero(l, x);
     // + 8 keeps the quadrant number positive; 8 ≡ 0 (mod 4).
     let quadrant = l.truncate(quarter + l.real(8.0)) & l.int(3);
     let odd = (quadrant & l.int(1)).same(l.int(1));

@@ -8,10 +8,14 @@
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
+use super::lookup::{self, SMALL};
 use fearless_simd::prelude::*;
 use fearless_simd::{
     Level, f32x16, f64x8, i32x16, mask32x16, mask64x8, u8x16, u8x64, u32x16, u64x8,
 };
+
+/// Most lanes of a packet.
+pub const WIDEST: usize = 16;
 
 /// The scalar stored in one lane, as arrays keep it.
 pub trait Scalar:
@@ -201,6 +205,10 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn store_int(self, x: Self::Int, to: &mut [u32]);
     /// `table[index]` lane by lane; an index outside reads the last entry.
     fn gather(self, table: &[Self::Scalar], index: Self::Int) -> Self::Real;
+    /// `table[index]` lane by lane, for indices below 16.
+    fn lookup(self, table: &[Self::Scalar; SMALL], index: Self::Int) -> Self::Real;
+    /// The same in a table of integers.
+    fn lookup_int(self, table: &[u32; SMALL], index: Self::Int) -> Self::Int;
     /// One lane.
     fn lane(self, x: Self::Real, i: usize) -> Self::Scalar;
     /// One lane of an integer.
@@ -526,6 +534,15 @@ impl<S: Simd> Lanes for Single<S> {
         f32x16::simd_from(self.0, out)
     }
     #[inline(always)]
+    fn lookup(self, table: &[f32; SMALL], index: Self::Int) -> Self::Real {
+        let table = f32x16::from_slice(self.0, table);
+        lookup::single(self.0, table.bitcast(), index).bitcast()
+    }
+    #[inline(always)]
+    fn lookup_int(self, table: &[u32; SMALL], index: Self::Int) -> Self::Int {
+        lookup::single(self.0, u32x16::from_slice(self.0, table), index)
+    }
+    #[inline(always)]
     fn lane(self, x: Self::Real, i: usize) -> f32 {
         x[i & 15]
     }
@@ -646,6 +663,19 @@ impl<S: Simd> Lanes for Double<S> {
             *value = table[(i as usize).min(last)];
         }
         f64x8::simd_from(self.0, out)
+    }
+    #[inline(always)]
+    fn lookup(self, table: &[f64; SMALL], index: Self::Int) -> Self::Real {
+        lookup::double(self.0, table, index)
+    }
+    #[inline(always)]
+    fn lookup_int(self, table: &[u32; SMALL], index: Self::Int) -> Self::Int {
+        let index: [u64; 8] = index.into();
+        let mut out = [0; 8];
+        for (out, i) in out.iter_mut().zip(index) {
+            *out = table[i as usize % SMALL].into();
+        }
+        u64x8::simd_from(self.0, out)
     }
     #[inline(always)]
     fn lane(self, x: Self::Real, i: usize) -> f64 {

@@ -9,6 +9,7 @@ pub mod interval;
 pub mod interval_functions;
 pub mod jet;
 pub mod lanes;
+pub mod lookup;
 pub mod number;
 pub mod scalar_lane;
 pub mod vec3;

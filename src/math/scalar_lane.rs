@@ -2,6 +2,7 @@
 //! the bits that each of eight lanes would have.
 
 use super::lanes::{Int, Lanes, Mask, Real};
+use super::lookup::SMALL;
 
 /// One f64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -160,6 +161,14 @@ impl Lanes for One {
     }
     #[inline(always)]
     fn gather(self, table: &[f64], index: u32) -> f64 {
+        table[(index as usize).min(table.len() - 1)]
+    }
+    #[inline(always)]
+    fn lookup(self, table: &[f64; SMALL], index: u32) -> f64 {
+        self.gather(table, index)
+    }
+    #[inline(always)]
+    fn lookup_int(self, table: &[u32; SMALL], index: u32) -> u32 {
         table[(index as usize).min(table.len() - 1)]
     }
     #[inline(always)]

@@ -145,6 +145,22 @@ impl<R: Real> Neg for Vec3<R> {
 pub struct Rows<T> {
     /// Rows of the 3×4 matrix.
     pub rows: [[T; 4]; 3],
+    /// The only coordinate that each row depends on; [`SEVERAL`] where there is more than one.
+    only: [u8; 3],
+}
+
+/// Marks a row that depends on more than one coordinate.
+const SEVERAL: u8 = 3;
+
+/// The only coordinate that a row depends on: most things stand square to the axes, and what is
+/// multiplied by zero need not be computed.
+fn only(row: &[f64; 4]) -> u8 {
+    match row {
+        [_, 0.0, 0.0, _] => 0,
+        [0.0, _, 0.0, _] => 1,
+        [0.0, 0.0, _, _] => 2,
+        _ => SEVERAL,
+    }
 }
 
 impl<T: super::lanes::Scalar> Rows<T> {
@@ -152,6 +168,32 @@ impl<T: super::lanes::Scalar> Rows<T> {
     pub fn from_f64(rows: &[[f64; 4]; 3]) -> Self {
         Self {
             rows: rows.map(|row| row.map(T::from_f64)),
+            only: rows.each_ref().map(only),
+        }
+    }
+
+    /// Row `i` of the images of a point and of a vector.
+    #[inline(always)]
+    pub fn row<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        i: usize,
+        p: Vec3<L::Real>,
+        v: Vec3<L::Real>,
+    ) -> (L::Real, L::Real) {
+        let r = &self.rows[i];
+        let along = inlined(
+            #[inline(always)]
+            |j: usize, p: L::Real, v: L::Real| {
+                let scale = l.splat(r[j]);
+                (scale.mul_add(p, l.splat(r[3])), scale * v)
+            },
+        );
+        match self.only[i] {
+            0 => along(0, p.x, v.x),
+            1 => along(1, p.y, v.y),
+            2 => along(2, p.z, v.z),
+            _ => (self.row_point(l, i, p), self.row_dot(l, i, v)),
         }
     }
 

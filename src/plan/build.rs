@@ -5,10 +5,14 @@ use glam::DVec3;
 use super::PlanError;
 use super::choose::Choices;
 use super::extent::{about_camera, columns, is_similarity, perpendicular, translation};
+use super::occluders::occluders;
 use crate::camera::LaneCamera;
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::model::{Checker, Many, Model, ObjectShading, Scatter};
-use crate::light::{CubeLight, LaneLight, LightShape, PlanarLight, RectangleLight, SphereLight};
+use crate::integrate::parts::Parts;
+use crate::light::{
+    CubeLight, LaneLight, LightShape, PlanarLight, RectangleLight, SmallLights, SphereLight,
+};
 use crate::math::affine::Affine;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Sequence;
@@ -52,6 +56,13 @@ pub fn build<T: Scalar>(
         .as_ref()
         .map(|spectrum| builder.spectrum(spectrum));
     let lights = builder.pick();
+    let all = 0..scene.objects.len() as u32;
+    let occluders = if choices.full {
+        all.collect()
+    } else {
+        let lit: Vec<u32> = lights.iter().map(|light| light.object).collect();
+        occluders(scene, &lit, T::ROUNDOFF)
+    };
     let many = builder.bounded.len() > LARGEST_LIST;
     let model = Model {
         hierarchy: many.then(|| Many {
@@ -67,9 +78,12 @@ pub fn build<T: Scalar>(
         ),
         max_depth: scene.image.max_depth.unwrap_or(u32::MAX),
         needs: choices.needs,
+        occluders,
+        parts: Parts::new(&builder.shapes, &builder.shading),
         shapes: builder.shapes,
         implicits: builder.implicits,
         shading: builder.shading,
+        small_lights: SmallLights::new(&lights).map(Box::new),
         lights,
         environment,
         spectra: builder.bank,

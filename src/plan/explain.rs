@@ -301,9 +301,9 @@ fn precision(plan: &Plan) -> String {
 }
 
 fn intersection(scene: &Scene, plan: &Plan) -> String {
-    let hierarchy = match &plan.tables {
-        Tables::Single(tables) => tables.0.hierarchy.is_some(),
-        Tables::Double(tables) => tables.0.hierarchy.is_some(),
+    let (hierarchy, occluders) = match &plan.tables {
+        Tables::Single(tables) => (tables.0.hierarchy.is_some(), tables.0.occluders.len()),
+        Tables::Double(tables) => (tables.0.hierarchy.is_some(), tables.0.occluders.len()),
     };
     let count = scene.objects.len();
     let mut text = format!(
@@ -315,6 +315,11 @@ fn intersection(scene: &Scene, plan: &Plan) -> String {
             format!("each ray asks a list of {count} {noun}")
         }
     );
+    if occluders < count {
+        text.push_str(&format!(
+            "; shadow rays ask {occluders}, as the others can hide no light"
+        ));
+    }
     let finders = match &plan.tables {
         Tables::Single(tables) => finders(&tables.0.implicits),
         Tables::Double(tables) => finders(&tables.0.implicits),

@@ -8,6 +8,7 @@ pub mod choose;
 pub mod explain;
 pub mod extent;
 pub mod needs;
+pub mod occluders;
 
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::model::Model;

@@ -73,7 +73,7 @@ pub trait Runs: Scalar {
     fn chunk<const C: usize>(
         level: Instructions,
         scene: &(Model<Self>, Spectrometer<Self>),
-        requests: &[chunk::Request],
+        requests: &chunk::Requests,
         workspace: &mut Workspace<Self, C>,
     );
 }
@@ -84,7 +84,7 @@ macro_rules! runs {
             fn chunk<const C: usize>(
                 level: Instructions,
                 (model, spectrometer): &(Model<Self>, Spectrometer<Self>),
-                requests: &[chunk::Request],
+                requests: &chunk::Requests,
                 workspace: &mut Workspace<Self, C>,
             ) {
                 macro_rules! on {

@@ -1,7 +1,7 @@
 //! One path again.
 
 use super::dispatch::{Instructions, Runs};
-use crate::integrate::chunk::{Request, Workspace};
+use crate::integrate::chunk::{Request, Requests, Workspace};
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::model::Model;
 use crate::integrate::replay::Replayed;
@@ -26,7 +26,9 @@ fn one<T: Runs, const C: usize>(
 ) -> Replayed {
     let mut workspace = Workspace::<T, C>::new();
     workspace.trace = Some(Vec::new());
-    T::chunk(level, scene, &[request], &mut workspace);
+    let mut requests = Requests::default();
+    requests.push(request.x, request.y, request.sample, request.sample + 1);
+    T::chunk(level, scene, &requests, &mut workspace);
     let rows = &workspace.rows;
     let cumulative = Cumulative;
     let wavelengths = (0..C).map(|j| {

@@ -1,5 +1,7 @@
 //! Tiles: the unit of work of one thread.
 
+use std::ops::Range;
+
 use super::bins::Bins;
 use super::dispatch::{Instructions, Runs};
 use crate::film::pixels::Pixels;
@@ -104,56 +106,75 @@ impl Tile {
         let Worker {
             workspace,
             requests,
+            runs,
         } = worker;
         workspace.rungs = Rungs::default();
         workspace.beyond = chunk::Beyond::default();
-        let width = self.window.width();
         let mut pixel = 0;
         let mut sample = from;
         let pixels = self.window.pixels() as u32;
         while pixel < pixels {
             requests.clear();
+            runs.clear();
             while requests.len() < CHUNK && pixel < pixels {
                 let end = to.min(sample.saturating_add((CHUNK - requests.len()) as u32));
-                let (x, y) = (
-                    self.window.x0 + pixel % width,
-                    self.window.y0 + pixel / width,
-                );
-                requests.extend((sample..end).map(|sample| chunk::Request { x, y, sample }));
+                let (x, y) = self.place(pixel);
+                requests.push(x, y, sample, end);
+                runs.push(Run {
+                    pixel,
+                    samples: sample..end,
+                });
                 sample = end;
                 if sample == to {
                     (pixel, sample) = (pixel + 1, from);
                 }
             }
             T::chunk(level, scene, requests, workspace);
-            self.collect(requests, workspace);
+            self.collect(runs, workspace);
         }
         self.rungs = self.rungs.joined(workspace.rungs);
         self.beyond.sum += workspace.beyond.sum;
         self.beyond.squares += workspace.beyond.squares;
     }
 
-    fn collect<T: Scalar, const C: usize>(
-        &mut self,
-        requests: &[chunk::Request],
-        workspace: &Workspace<T, C>,
-    ) {
+    /// Column and row of one of the tile's pixels.
+    fn place(&self, pixel: u32) -> (u32, u32) {
         let width = self.window.width();
-        for (slot, (request, xyz)) in requests.iter().zip(&workspace.tristimulus).enumerate() {
-            let xyz = xyz.map(Scalar::to_f64);
-            if xyz.iter().all(|v| v.is_finite()) {
-                let pixel = (request.y - self.window.y0) * width + request.x - self.window.x0;
-                self.pixels.add(pixel as usize, request.sample, xyz);
-                if let Some(bins) = &mut self.bins {
-                    let rows = &workspace.rows;
-                    bins.add(pixel as usize, &rows.radiance[slot], rows.row[slot]);
+        (
+            self.window.x0 + pixel % width,
+            self.window.y0 + pixel / width,
+        )
+    }
+
+    fn collect<T: Scalar, const C: usize>(&mut self, runs: &[Run], workspace: &Workspace<T, C>) {
+        let mut slot = 0;
+        for run in runs {
+            let pixel = run.pixel as usize;
+            for sample in run.samples.clone() {
+                let xyz = workspace.tristimulus[slot].map(Scalar::to_f64);
+                if xyz.iter().all(|v| v.is_finite()) {
+                    self.pixels.add(pixel, sample, xyz);
+                    if let Some(bins) = &mut self.bins {
+                        let rows = &workspace.rows;
+                        bins.add(pixel, &rows.radiance[slot], rows.row[slot]);
+                    }
+                } else {
+                    self.not_a_number += 1;
+                    let (x, y) = self.place(run.pixel);
+                    let request = chunk::Request { x, y, sample };
+                    self.first_not_a_number.get_or_insert(request);
                 }
-            } else {
-                self.not_a_number += 1;
-                self.first_not_a_number.get_or_insert(*request);
+                slot += 1;
             }
         }
     }
+}
+
+/// Samples of one pixel that follow each other.
+#[derive(Debug, Clone)]
+struct Run {
+    pixel: u32,
+    samples: Range<u32>,
 }
 
 /// Buffers of a worker in either precision.
@@ -163,5 +184,6 @@ where
     T: Scalar,
 {
     workspace: Workspace<T, C>,
-    requests: Vec<chunk::Request>,
+    requests: chunk::Requests,
+    runs: Vec<Run>,
 }

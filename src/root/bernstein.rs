@@ -16,6 +16,8 @@ pub const DEGREES: [usize; 6] = [2, 4, 6, 8, 12, 24];
 
 /// Splits before a lane gives up. A split at a minimum decides unless the minimum is within the
 /// bound of zero; a polynomial of degree n has n/2 of them, and each is found in a few steps.
+/// A root with a close pair of complex ones is narrowed by halves, down to their distance, which
+/// takes as many more as there are digits more: so this is for each word of a number.
 const MOST_SPLITS: usize = 32;
 
 /// Steps of Newton's method, which doubles the digits in each, or halvings where it does not.
@@ -32,6 +34,8 @@ pub struct Problem<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize> {
     pub on_root: L::Mask,
     /// Bound of the value there.
     pub start_error: L::Real,
+    /// How many times 1 is known to be a root, in all lanes: that many last coefficients are zero.
+    pub roots_at_end: usize,
     /// Those that are asked for.
     pub active: L::Mask,
 }
@@ -51,6 +55,8 @@ pub struct Roots<L: Lanes> {
     pub low: L::Real,
     /// Nor after this.
     pub high: L::Real,
+    /// Where the search ended in lanes that are neither: a root of higher multiplicity is near.
+    pub doubt: L::Real,
 }
 
 /// Signs of a row of coefficients.
@@ -75,9 +81,9 @@ const fn binomial(n: usize, i: usize) -> f64 {
 
 /// Reads the signs. In the lanes of `known` the first coefficient may have any.
 #[inline(always)]
-fn signs<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
+fn signs<L: Lanes<Scalar = f64>, W: Word<L>>(
     l: L,
-    c: &[W; M],
+    c: &[W],
     error: L::Real,
     known: L::Mask,
 ) -> Signs<L> {
@@ -186,6 +192,10 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
     let negative = l.select(known, rest[1].head(), start).lt(zero);
     let sign = l.select(negative, -one, one);
     let mut largest = zero;
+    let counted = M - problem.roots_at_end.min(M - 1);
+    for c in &mut rest[counted..] {
+        *c = W::constant(l, [0.0; 2]);
+    }
     for c in &mut rest {
         *c = c.times_real(sign);
         largest = largest.max(c.head().abs());
@@ -204,8 +214,9 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
     // A start whose sign is unknown stays so in every first part.
     let (mut found, mut absent, mut given_up) = (nobody, nobody, !known & !start.abs().gt(error));
     let mut fresh = problem.active & !given_up;
-    for _ in 0..MOST_SPLITS {
-        let s = signs(l, &rest, error, known);
+    let (mut doubt, mut part) = (one, one);
+    for _ in 0..MOST_SPLITS * W::ROWS {
+        let s = signs(l, &rest[..counted], error, known);
         let alone = fresh & s.one_change;
         if alone.any() {
             segment.take(l, alone, &rest, from, one - from);
@@ -217,7 +228,10 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
         if !open.any() {
             break;
         }
-        at = l.select(fresh, minimum(l, &rest, error), at);
+        // What is left of a part that was not decided as a whole comes first.
+        let next = l.select(part.lt(one), part, minimum(l, &rest, error));
+        at = l.select(fresh, next, at);
+        doubt = l.select(open, at.mul_add(one - from, from), doubt);
         let [before, after] = split(&rest, at);
         error = error + per_split;
         let s = signs(l, &before, error, known);
@@ -228,6 +242,8 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
         }
         given_up = given_up | (open & s.touching);
         fresh = open & s.positive;
+        let left = l.select(part.gt(at), (part - at) / (one - at), one);
+        part = l.select(fresh, left, l.select(open, at, part));
         if fresh.any() {
             merged(l, fresh, &after, &mut rest);
             from = l.select(fresh, at.mul_add(one - from, from), from);
@@ -242,11 +258,12 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
         root: zero,
         low: zero,
         high: one,
+        doubt,
     };
     if found.any() {
         let [root, low, high] = refined(l, &segment.coefficients, error, found);
         // Two roundings a split in `from`, and three here, of numbers below 1.
-        let slack = l.real((2 * MOST_SPLITS + 3) as f64 * f64::EPSILON / 2.0);
+        let slack = l.real((2 * MOST_SPLITS * W::ROWS + 3) as f64 * f64::EPSILON / 2.0);
         roots.root = root.mul_add(segment.width, segment.from);
         roots.low = low.mul_add(segment.width, segment.from) - slack;
         roots.high = high.mul_add(segment.width, segment.from) + slack;

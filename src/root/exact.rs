@@ -115,6 +115,15 @@ impl Polynomial {
         self.0.len().saturating_sub(1)
     }
 
+    /// Without the powers of two that its coefficients have in common.
+    fn without_twos(mut self) -> Self {
+        let twos = self.0.iter().filter_map(BigInt::trailing_zeros).min();
+        for c in &mut self.0 {
+            *c >>= twos.unwrap_or(0);
+        }
+        self
+    }
+
     /// Without the common factor of its coefficients.
     fn primitive(self) -> Self {
         let mut content = BigInt::zero();
@@ -150,27 +159,29 @@ impl Polynomial {
         self.at(point).sign()
     }
 
-    /// A positive multiple of the remainder by `divisor`.
+    /// The leading coefficient; 0 for zero.
+    fn leading(&self) -> BigInt {
+        self.0.last().cloned().unwrap_or_default()
+    }
+
+    /// The remainder by a divisor other than zero, times the magnitude of its leading coefficient
+    /// to the power of one more than the difference of degrees.
     fn remainder(&self, divisor: &Self) -> Self {
-        let mut rest = self.clone();
-        let Some(leading) = divisor.0.last() else {
-            return rest;
-        };
+        let mut rest = self.0.clone();
+        let leading = divisor.leading();
         let magnitude = leading.abs();
-        while !rest.is_zero() && rest.degree() >= divisor.degree() {
-            let shift = rest.degree() - divisor.degree();
-            let top = rest.0.pop().unwrap_or_default();
+        while rest.len() >= divisor.0.len() {
+            let shift = rest.len() - divisor.0.len();
+            let top = rest.pop().unwrap_or_default();
             let top = if leading.is_negative() { -top } else { top };
-            for c in &mut rest.0 {
+            for c in &mut rest {
                 *c *= &magnitude;
             }
-            let lower = divisor.0.iter().take(divisor.degree());
-            for (i, d) in lower.enumerate() {
-                rest.0[i + shift] -= &top * d;
+            for (i, d) in divisor.0.iter().take(divisor.degree()).enumerate() {
+                rest[i + shift] -= &top * d;
             }
-            rest = Self::new(rest.0);
         }
-        rest
+        Self::new(rest)
     }
 
     /// The quotient by a divisor, up to a constant factor of either sign.
@@ -200,16 +211,30 @@ impl Polynomial {
 struct Chain(Vec<Polynomial>);
 
 impl Chain {
+    /// Remainders with changed signs, divided by what subresultants have in common (Collins 1967,
+    /// Brown and Traub 1971), which is known beforehand: their coefficients grow as slowly as they
+    /// can.
     fn new(polynomial: &Polynomial) -> Self {
-        let mut chain = vec![polynomial.clone(), polynomial.derivative().primitive()];
+        let mut chain = vec![polynomial.clone(), polynomial.derivative()];
+        let (mut g, mut h) = (BigInt::one(), BigInt::one());
         loop {
             let [.., a, b] = chain.as_slice() else { break };
             if b.is_zero() {
                 chain.pop();
                 break;
             }
-            let rest = a.remainder(b).primitive();
-            chain.push(Polynomial(rest.0.into_iter().map(|c| -c).collect()));
+            let drop = (a.degree() - b.degree()) as u32;
+            let common = -(&g * h.pow(drop));
+            let rest = a.remainder(b);
+            g = b.leading().abs();
+            h = match drop {
+                0 => h,
+                1 => g.clone(),
+                _ => g.pow(drop) / h.pow(drop - 1),
+            };
+            chain.push(Polynomial(
+                rest.0.into_iter().map(|c| c / &common).collect(),
+            ));
         }
         Self(chain)
     }
@@ -238,19 +263,28 @@ impl Chain {
     }
 }
 
-/// The first root on the stretch. The zero polynomial has none that could be told from the others.
-pub fn first_root(coefficients: &[BigInt], stretch: &Stretch) -> Option<ExactRoot> {
+/// The first root on the stretch; it is looked for near the hint first. The zero polynomial has none that could be told from the others.
+pub fn first_root(
+    coefficients: &[BigInt],
+    stretch: &Stretch,
+    hint: Option<f64>,
+) -> Option<ExactRoot> {
     let order = stretch.low.compare(&stretch.high);
     let point = order == Ordering::Equal && stretch.low_counts && stretch.high_counts;
     if order != Ordering::Less && !point {
         return None;
     }
-    let whole = Polynomial::new(coefficients.to_vec()).primitive();
+    let whole = Polynomial::new(coefficients.to_vec()).without_twos();
     if whole.degree() == 0 {
         return None;
     }
     let chain = Chain::new(&whole);
     let common = chain.last().clone();
+    let common = if common.degree() > 0 {
+        common.primitive()
+    } else {
+        common
+    };
     let (simple, chain) = if common.degree() == 0 {
         (whole, chain)
     } else {
@@ -269,7 +303,7 @@ pub fn first_root(coefficients: &[BigInt], stretch: &Stretch) -> Option<ExactRoo
     if count == 0 {
         return None;
     }
-    let (low, high) = isolated(&simple, &chain, stretch);
+    let (low, high) = isolated(&simple, &chain, stretch, hint);
     let multiplicity = multiplicity(common, &low, &high);
     if low == high {
         return Some(exactly(&low, multiplicity));
@@ -309,12 +343,31 @@ fn multiplicity(mut common: Polynomial, low: &Point, high: &Point) -> u32 {
 
 /// Points around the first root with no f64 between, or closer than a 2⁻⁶⁴ of the stretch; the
 /// root itself twice if it was met. There is a root in (low, high].
-fn isolated(simple: &Polynomial, chain: &Chain, stretch: &Stretch) -> (Point, Point) {
+fn isolated(
+    simple: &Polynomial,
+    chain: &Chain,
+    stretch: &Stretch,
+    hint: Option<f64>,
+) -> (Point, Point) {
     let (mut low, mut high) = (stretch.low.clone(), stretch.high.clone());
     let (mut a, mut b) = (low.floor(), high.ceil());
     let close = (b - a) / (1u128 << 64) as f64;
     let changes_at_low = chain.changes(&low);
     let mut count = changes_at_low.saturating_sub(chain.changes(&high));
+    if let Some(hint) = hint {
+        let near = (b - a) * NEAR;
+        for x in [hint - near, hint + near] {
+            let Some((point, x)) = between(&low, &high, x, false) else {
+                continue;
+            };
+            let before = changes_at_low.saturating_sub(chain.changes(&point));
+            if before > 0 {
+                (high, b, count) = (point, x, before);
+            } else {
+                (low, a) = (point, x);
+            }
+        }
+    }
     while count > 1 {
         let Some((middle, x)) = between(&low, &high, a + (b - a) / 2.0, b - a <= close) else {
             return (low, high);
@@ -331,6 +384,9 @@ fn isolated(simple: &Polynomial, chain: &Chain, stretch: &Stretch) -> (Point, Po
     }
     narrowed(simple, [low, high], [a, b], close)
 }
+
+/// How near a hint is expected to be, relative to the stretch.
+const NEAR: f64 = 1.0 / (1u64 << 28) as f64;
 
 /// x as a point, if it is strictly between.
 fn between(low: &Point, high: &Point, x: f64, close: bool) -> Option<(Point, f64)> {
@@ -385,32 +441,41 @@ fn narrowed(
     (low, high)
 }
 
-/// A value up to a positive factor that is the same for all points of a polynomial.
+/// A value and its magnitude as m · 2ᵉ, m in [½, 1), roughly.
 #[derive(Clone)]
 struct Value {
-    numerator: Exact,
-    denominator: Exact,
+    sign: Sign,
+    mantissa: f64,
+    exponent: i64,
 }
 
 impl Value {
     fn new(polynomial: &Polynomial, point: &Point) -> Self {
-        let power = point.denominator.pow(polynomial.degree() as u32);
+        let numerator = polynomial.at(point);
+        let (top, bits) = leading(&numerator);
+        let (below, below_bits) = leading(&point.denominator);
+        let degree = polynomial.degree() as i32;
         Self {
-            numerator: Exact::integer(polynomial.at(point)),
-            denominator: Exact::integer(power),
+            sign: numerator.sign(),
+            mantissa: top / libm::pow(below, f64::from(degree)),
+            exponent: bits - below_bits * i64::from(degree),
         }
     }
 
     fn sign(&self) -> Sign {
-        self.numerator.parts().0.sign()
+        self.sign
     }
 
     /// |a| / (|a| + |b|), roughly.
     fn share(a: &Self, b: &Self) -> f64 {
-        let ratio = b
-            .numerator
-            .times(&a.denominator)
-            .divided_by(&a.numerator.times(&b.denominator));
-        1.0 / (1.0 + ratio.to_f64().abs())
+        let exponent = (b.exponent - a.exponent).clamp(-1000, 1000) as i32;
+        1.0 / (1.0 + libm::ldexp(b.mantissa / a.mantissa, exponent))
     }
+}
+
+/// The leading digits of a magnitude, in [½, 1), and the power of two that goes with them.
+fn leading(x: &BigInt) -> (f64, i64) {
+    let bits = x.bits() as i64;
+    let scaled = Exact::integer(x.abs()).shifted(-bits);
+    (scaled.to_f64(), bits)
 }

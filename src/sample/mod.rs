@@ -13,7 +13,8 @@ pub mod warp;
 
 use crate::math::lanes::Lanes;
 
-/// Names of pairs of random dimensions. A bounce's slots repeat with [`Slot::STRIDE`].
+/// Names of pairs of random dimensions. A bounce's slots repeat with [`Slot::STRIDE`]; slots 2i and
+/// 2i + 1 are often wanted together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Slot {
@@ -23,12 +24,12 @@ pub enum Slot {
     Wavelength = 1,
     /// Position on the lens.
     Lens = 2,
-    /// Point on the chosen light.
-    Light = 3,
-    /// Direction of the scattered ray.
-    Bsdf = 4,
     /// Which light; which lobe of the surface.
-    Choice = 5,
+    Choice = 3,
+    /// Point on the chosen light.
+    Light = 4,
+    /// Direction of the scattered ray.
+    Bsdf = 5,
     /// Russian roulette.
     Roulette = 6,
     /// Whether a path goes on beyond `max_depth`.

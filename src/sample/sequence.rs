@@ -3,7 +3,7 @@
 use super::hash::{Keys, mix, pcg4d};
 use super::permute::permute;
 use super::{Slot, sobol};
-use crate::math::lanes::{Int, Lanes, Real, inlined};
+use crate::math::lanes::{Int, Lanes, Real, WIDEST, inlined};
 use crate::scene::SamplerKind;
 
 /// Which points a render uses, and how many of them a replicate may see.
@@ -42,18 +42,54 @@ impl Replicates {
         match self {
             Self::Fixed(count) => (i % count, i / count),
             Self::Growing => {
-                let mut count = 2;
+                // Counts are powers of two, so that sharing out is masking and shifting.
+                let mut bits = 1;
                 for start in GROWTH {
                     if i < start {
                         break;
                     }
                     if i < 2 * start {
                         let new = i - start;
-                        return (count + new % count, new / count);
+                        let count = 1 << bits;
+                        return (count + (new & (count - 1)), new >> bits);
                     }
-                    count *= 2;
+                    bits += 1;
                 }
-                (i % count, i / count)
+                (i & ((1 << bits) - 1), i >> bits)
+            }
+        }
+    }
+
+    /// [`Self::place`] of a packet of samples.
+    #[inline(always)]
+    pub fn places<L: Lanes>(self, l: L, i: L::Int) -> (L::Int, L::Int) {
+        match self {
+            Self::Fixed(count) => {
+                let mut samples = [0; WIDEST];
+                l.store_int(i, &mut samples);
+                let (mut replicates, mut indices) = ([0; WIDEST], [0; WIDEST]);
+                for ((i, replicate), index) in samples.iter().zip(&mut replicates).zip(&mut indices)
+                {
+                    *index = i / count;
+                    *replicate = i - *index * count;
+                }
+                (l.load_int(&replicates), l.load_int(&indices))
+            }
+            Self::Growing => {
+                let (mut replicate, mut index) = (i & l.int(1), i.right(1));
+                for (bits, start) in (1..).zip(GROWTH) {
+                    let count = 1 << bits;
+                    let new = i.minus(l.int(start));
+                    let catching_up = l.int(count).plus(new & l.int(count - 1));
+                    let before = i.below(l.int(start));
+                    let caught_up = !i.below(l.int(2 * start));
+                    replicate = l.select_int(before, replicate, catching_up);
+                    index = l.select_int(before, index, new.right(bits));
+                    let all = i & l.int(2 * count - 1);
+                    replicate = l.select_int(caught_up, all, replicate);
+                    index = l.select_int(caught_up, i.right(bits + 1), index);
+                }
+                (replicate, index)
             }
         }
     }
@@ -215,22 +251,26 @@ impl Sequence {
                             },
                         }
                     }
-                    SamplerKind::Independent | SamplerKind::Stratified => {
+                    SamplerKind::Independent => {
                         let depth = l.int(0);
-                        let wavelength = if self.kind == SamplerKind::Stratified {
-                            let slot = Slot::Wavelength.at(l, depth);
-                            let stratum =
-                                permute(l, id.index, self.points, self.slot_seed(l, id, slot));
-                            let [jitter, ..] = self.independent(l, id, slot);
-                            self.jittered(l, stratum, jitter, self.points)
-                        } else {
-                            self.independent(l, id, Slot::Wavelength.at(l, depth))[0]
-                        };
+                        let [pixel, [wavelength, _]] = self.independent(l, id, Slot::Pixel, depth);
                         CameraSample {
-                            pixel: self.pair(l, id, Slot::Pixel.at(l, depth)),
+                            pixel,
                             wavelength,
                             lens: if lens {
-                                self.pair(l, id, Slot::Lens.at(l, depth))
+                                self.independent(l, id, Slot::Lens, depth)[0]
+                            } else {
+                                [zero; 2]
+                            },
+                        }
+                    }
+                    SamplerKind::Stratified => {
+                        let depth = l.int(0);
+                        CameraSample {
+                            pixel: self.pair(l, id, Slot::Pixel, depth),
+                            wavelength: self.single(l, id, Slot::Wavelength, depth),
+                            lens: if lens {
+                                self.pair(l, id, Slot::Lens, depth)
                             } else {
                                 [zero; 2]
                             },
@@ -241,15 +281,15 @@ impl Sequence {
         )
     }
 
-    /// Two numbers of a padded slot.
+    /// Two numbers of a padded slot at a bounce.
     #[inline(never)]
-    pub fn pair<L: Lanes>(&self, l: L, id: Identity<L>, slot: L::Int) -> [L::Real; 2] {
+    pub fn pair<L: Lanes>(&self, l: L, id: Identity<L>, slot: Slot, depth: L::Int) -> [L::Real; 2] {
         l.vectorize(
             #[inline(always)]
             || {
                 match self.kind {
                     SamplerKind::Sobol | SamplerKind::Center => {
-                        let base = self.slot_seed(l, id, slot);
+                        let base = self.slot_seed(l, id, slot, depth);
                         let index = sobol::shuffled(l, id.index, base);
                         let first =
                             sobol::scrambled(l, index, mix(l, base.plus(l.int(0x68bc_21eb))));
@@ -260,9 +300,9 @@ impl Sequence {
                     }
                     SamplerKind::Stratified => {
                         let [across, down] = self.strata;
-                        let stratum =
-                            permute(l, id.index, across * down, self.slot_seed(l, id, slot));
-                        let [u, v, ..] = self.independent(l, id, slot);
+                        let seed = self.slot_seed(l, id, slot, depth);
+                        let stratum = permute(l, id.index, across * down, seed);
+                        let [u, v] = self.independent_pair(l, id, slot, depth);
                         let position = l.to_real(stratum);
                         // The quotient is at least ½/across away from the integer that would be
                         // rounded to; above 2²³ strata the sum itself may be rounded up to the
@@ -278,23 +318,43 @@ impl Sequence {
                             self.below_one(l, (row + v) / l.real(down.into())),
                         ]
                     }
-                    SamplerKind::Independent => {
-                        let [u, v, ..] = self.independent(l, id, slot);
-                        [u, v]
-                    }
+                    SamplerKind::Independent => self.independent_pair(l, id, slot, depth),
                 }
             },
         )
     }
 
-    /// One number of a padded slot.
+    /// The numbers of slots 2i and 2i + 1, of which `slot` is the first.
     #[inline(never)]
-    pub fn single<L: Lanes>(&self, l: L, id: Identity<L>, slot: L::Int) -> L::Real {
+    pub fn two_pairs<L: Lanes>(
+        &self,
+        l: L,
+        id: Identity<L>,
+        slot: Slot,
+        second: Slot,
+        depth: L::Int,
+    ) -> [[L::Real; 2]; 2] {
+        debug_assert!(slot as u32 % 2 == 0 && second as u32 == slot as u32 + 1);
+        l.vectorize(
+            #[inline(always)]
+            || match self.kind {
+                SamplerKind::Independent => self.independent(l, id, slot, depth),
+                _ => [
+                    self.pair(l, id, slot, depth),
+                    self.pair(l, id, second, depth),
+                ],
+            },
+        )
+    }
+
+    /// One number of a padded slot at a bounce.
+    #[inline(never)]
+    pub fn single<L: Lanes>(&self, l: L, id: Identity<L>, slot: Slot, depth: L::Int) -> L::Real {
         l.vectorize(
             #[inline(always)]
             || match self.kind {
                 SamplerKind::Sobol | SamplerKind::Center => {
-                    let base = self.slot_seed(l, id, slot);
+                    let base = self.slot_seed(l, id, slot, depth);
                     let index = sobol::shuffled(l, id.index, base);
                     l.uniform(sobol::scrambled(
                         l,
@@ -303,24 +363,52 @@ impl Sequence {
                     ))
                 }
                 SamplerKind::Stratified => {
-                    let stratum = permute(l, id.index, self.points, self.slot_seed(l, id, slot));
-                    let [jitter, ..] = self.independent(l, id, slot);
+                    let seed = self.slot_seed(l, id, slot, depth);
+                    let stratum = permute(l, id.index, self.points, seed);
+                    let [jitter, _] = self.independent_pair(l, id, slot, depth);
                     self.jittered(l, stratum, jitter, self.points)
                 }
-                SamplerKind::Independent => self.independent(l, id, slot)[0],
+                SamplerKind::Independent => self.independent_pair(l, id, slot, depth)[0],
             },
         )
     }
 
     #[inline(always)]
-    fn slot_seed<L: Lanes>(&self, l: L, id: Identity<L>, slot: L::Int) -> L::Int {
-        mix(l, id.key ^ slot.times(l.int(0x9e37_79b9)))
+    fn slot_seed<L: Lanes>(&self, l: L, id: Identity<L>, slot: Slot, depth: L::Int) -> L::Int {
+        mix(l, id.key ^ slot.at(l, depth).times(l.int(0x9e37_79b9)))
     }
 
+    /// Independent numbers of slots 2i and 2i + 1, of which `slot` is the first: the hash makes four
+    /// at a time.
     #[inline(always)]
-    fn independent<L: Lanes>(&self, l: L, id: Identity<L>, slot: L::Int) -> [L::Real; 4] {
-        let [a, b, c, d] = pcg4d(l, [id.key, id.index, slot, l.int(0x2545_f491)]);
-        [l.uniform(a), l.uniform(b), l.uniform(c), l.uniform(d)]
+    fn independent<L: Lanes>(
+        &self,
+        l: L,
+        id: Identity<L>,
+        slot: Slot,
+        depth: L::Int,
+    ) -> [[L::Real; 2]; 2] {
+        let counters = [id.key, id.index, slot.at(l, depth), l.int(0x2545_f491)];
+        let [a, b, c, d] = pcg4d(l, counters);
+        [[l.uniform(a), l.uniform(b)], [l.uniform(c), l.uniform(d)]]
+    }
+
+    /// The same for one of the two.
+    #[inline(always)]
+    fn independent_pair<L: Lanes>(
+        &self,
+        l: L,
+        id: Identity<L>,
+        slot: Slot,
+        depth: L::Int,
+    ) -> [L::Real; 2] {
+        let [even, odd] = match slot {
+            Slot::Pixel | Slot::Wavelength => self.independent(l, id, Slot::Pixel, depth),
+            Slot::Lens | Slot::Choice => self.independent(l, id, Slot::Lens, depth),
+            Slot::Light | Slot::Bsdf => self.independent(l, id, Slot::Light, depth),
+            Slot::Roulette | Slot::Beyond => self.independent(l, id, Slot::Roulette, depth),
+        };
+        if slot as u32 % 2 == 0 { even } else { odd }
     }
 
     #[inline(always)]

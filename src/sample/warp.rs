@@ -1,6 +1,6 @@
 //! Maps of the unit square: sample and pdf in pairs.
 
-use crate::math::functions::sin_cos_turns;
+use crate::math::functions::{sin_cos_eighth, sin_cos_turns};
 use crate::math::lanes::{Lanes, Real};
 use crate::math::vec3::Vec3;
 
@@ -15,7 +15,7 @@ pub fn square_to_disk<L: Lanes>(l: L, u: L::Real, v: L::Real) -> (L::Real, L::Re
     let (radius, other) = (l.select(x_major, a, b), l.select(x_major, b, a));
     let ratio = l.select(radius.same(l.real(0.0)), l.real(0.0), other / radius);
     // An eighth of a turn at ratio 1.
-    let (s, c) = sin_cos_turns(l, ratio * l.real(0.125));
+    let (s, c) = sin_cos_eighth(l, ratio * l.real(0.125));
     let (along, across) = (radius * c, radius * s);
     (
         l.select(x_major, along, across),

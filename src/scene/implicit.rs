@@ -22,6 +22,9 @@ pub(super) type DefaultFinder = (FinderChoice, Option<Place>);
 const STEPS: u32 = 1000;
 const MOST_STEPS: u32 = 1_000_000;
 
+/// As many characters of an expression as a message shows.
+const SHOWN: usize = 40;
+
 const KEYS: [&str; 5] = ["inside", "parameters", "closed", "finder", "steps"];
 const BOX: &str = "[[x, y, z], [x, y, z]], the lower and the upper corner of a box";
 
@@ -73,18 +76,28 @@ pub(super) fn read(report: &Report, node: &Node, default: &DefaultFinder) -> Opt
         finder,
         steps: steps?,
     };
-    check(report, &implicit, chosen_at.unwrap_or(written.place))?;
+    check(report, &implicit, written, chosen_at)?;
     Some(implicit)
 }
 
 /// What only field, box and finder together can have wrong.
-fn check(report: &Report, implicit: &Implicit, chosen_at: Place) -> Option<()> {
+fn check(
+    report: &Report,
+    implicit: &Implicit,
+    written: &Node,
+    chosen_at: Option<Place>,
+) -> Option<()> {
     if implicit.finder != FinderChoice::Polynomial || implicit.field.polynomial.is_some() {
         return Some(());
     }
-    let message = "the finder \"polynomial\" for a field that is no polynomial";
+    // The finder may be asked for far from the field.
+    let text = report.text("object.shape.implicit", written)?;
+    let shown: String = text.chars().take(SHOWN).collect();
+    let rest = if shown.len() < text.len() { "…" } else { "" };
+    let message =
+        format!("the finder \"polynomial\" for a field that is no polynomial: {shown}{rest}");
     let expected = "\"auto\", \"interval\", \"sphere-trace\" or \"sign-change\"";
-    report.fail(Complaint::new(chosen_at, message).expected(expected))
+    report.fail(Complaint::new(chosen_at.unwrap_or(written.place), message).expected(expected))
 }
 
 /// The field of an expression. What looks like a name of a surface is taken for a misspelt one.

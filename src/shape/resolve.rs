@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::list::{Query, nearest_of, occluded_by};
-use super::{Placed, Ray, Start, Tally};
+use super::{Placed, Ray, ShapeKind, Start, Tally};
 
 /// The certified shapes of a scene, by their index among all objects.
 #[derive(Debug, Clone, Default)]
@@ -20,6 +20,17 @@ pub struct Departure {
     pub object: u32,
     /// Whether the ray goes into the object.
     pub inward: bool,
+}
+
+/// What the ladder found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Resolved {
+    /// Where on the ray.
+    pub t: f64,
+    /// Index of the object.
+    pub object: u32,
+    /// Which of its parts: the axis of a cube's face, else 0.
+    pub part: u32,
 }
 
 impl Resolver {
@@ -44,7 +55,7 @@ impl Resolver {
         }
     }
 
-    /// The closest hit: its parameter and object; among the candidates, if given.
+    /// The closest hit; among the candidates, if given.
     pub fn nearest(
         &self,
         candidates: Option<&[u32]>,
@@ -52,7 +63,7 @@ impl Resolver {
         direction: DVec3,
         departure: Departure,
         tally: &mut Tally,
-    ) -> Option<(f64, u32)> {
+    ) -> Option<Resolved> {
         let query = Query {
             ray: Ray { origin, direction },
             t_min: 0.0,
@@ -65,7 +76,13 @@ impl Resolver {
             |i| self.priorities[i],
             tally,
         )?;
-        Some((hit.t, self.objects[index]))
+        let cube = self.placed[index].kind() == ShapeKind::Cube;
+        let local = hit.local.abs();
+        Some(Resolved {
+            t: hit.t,
+            object: self.objects[index],
+            part: if cube { local.max_position() as u32 } else { 0 },
+        })
     }
 
     /// Whether anything but `except` lies strictly between the origin and `t_max`; among the

@@ -18,6 +18,7 @@ use glam::DVec3;
 pub use place::{Certified, Limits};
 
 use crate::math::lanes::{Double, Lanes};
+use crate::math::number::{binary_exponent, power_of_two};
 use crate::math::words::{Pair, Plain, Row};
 use crate::shape::Ray;
 use exact::ExactStart;
@@ -42,6 +43,8 @@ pub struct Packet {
     pub leaving: u32,
     /// Unit roundoff with which the origins of these were rounded.
     pub roundoff: f64,
+    /// How many times `t_max` is known to be a root of the only factor, in all lanes.
+    pub roots_at_end: usize,
 }
 
 impl Default for Packet {
@@ -54,6 +57,7 @@ impl Default for Packet {
             active: 0,
             leaving: 0,
             roundoff: f64::EPSILON / 2.0,
+            roots_at_end: 0,
         }
     }
 }
@@ -67,6 +71,15 @@ impl Packet {
         }
         [self.t_min[lane], self.t_max[lane]] = limits;
         self.active |= 1 << lane;
+    }
+
+    /// The ray in a lane.
+    fn ray(&self, lane: usize) -> Ray {
+        let at = |v: &[[f64; WIDTH]; 3]| DVec3::from_array(v.map(|axis| axis[lane]));
+        Ray {
+            origin: at(&self.origin),
+            direction: at(&self.direction),
+        }
     }
 }
 
@@ -101,6 +114,10 @@ pub struct Answers {
     pub tiers: [Tier; WIDTH],
     /// Lanes whose enclosure is wider than [`SHARP`] times the clipped stretch.
     blurred: u32,
+    /// Where the search ended in undecided lanes.
+    doubt: [f64; WIDTH],
+    /// Length of the clipped stretch.
+    stretch: [f64; WIDTH],
 }
 
 /// Width of an enclosure that counts as sharp, relative to the clipped stretch of the ray: half of
@@ -146,7 +163,7 @@ impl Certified {
         if again != 0 {
             let sharper = self.in_lanes(level, packet, again, true, workspace);
             let decided = sharper.found | sharper.absent;
-            for lane in lanes(again & decided) {
+            for lane in lanes(again & (open | decided)) {
                 answers.tiers[lane] = Tier::DoubleDouble;
                 answers.take(&sharper, lane);
             }
@@ -155,7 +172,9 @@ impl Certified {
         if wish.exact {
             for lane in lanes(open) {
                 answers.tiers[lane] = Tier::Exact;
-                self.decide(packet, lane, &mut answers);
+                if !self.multiple_root(level, packet, lane, &mut answers, workspace) {
+                    self.decide(packet, lane, &mut answers);
+                }
             }
         }
         answers
@@ -210,14 +229,75 @@ impl Certified {
         Answers::default()
     }
 
+    /// Tries whether the first hit of an undecided ray is a multiple root at a t of few bits close
+    /// to where the search ended, as where a ray passes through a node. Whether it is a root, and
+    /// how many times, is decided exactly; that none comes before it by signs of what is left when
+    /// it is divided out. Returns whether the ray is decided.
+    #[cold]
+    fn multiple_root(
+        &self,
+        level: Level,
+        packet: &Packet,
+        lane: usize,
+        answers: &mut Answers,
+        workspace: &mut Workspace,
+    ) -> bool {
+        let [factor] = self.factors.as_slice() else {
+            return false;
+        };
+        if packet.leaving >> lane & 1 == 1 {
+            return false;
+        }
+        let (doubt, stretch) = (answers.doubt[lane], answers.stretch[lane]);
+        let ray = packet.ray(lane);
+        for width in GUESS_WIDTHS {
+            let Some(t) = simplest(doubt - width * stretch, doubt + width * stretch) else {
+                continue;
+            };
+            if t <= packet.t_min[lane] || t >= packet.t_max[lane] || !self.surely_inside(&ray, t) {
+                continue;
+            }
+            let multiplicity = exact::order_of_vanishing(self, &factor.program, &ray, t);
+            if multiplicity < 2 || multiplicity > factor.program.result().degree {
+                continue;
+            }
+            let mut before = Packet {
+                roots_at_end: multiplicity,
+                ..*packet
+            };
+            before.t_max[lane] = t;
+            for sharper in [false, true] {
+                let found = self.in_lanes(level, &before, 1 << lane, sharper, workspace);
+                if found.absent >> lane & 1 == 1 {
+                    answers.found |= 1 << lane;
+                    answers.t[lane] = t;
+                    (answers.low[lane], answers.high[lane]) = (t, t);
+                    answers.multiplicity[lane] = multiplicity as u32 * factor.power;
+                    return true;
+                }
+                if found.found >> lane & 1 == 1 {
+                    answers.take(&found, lane);
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    /// Whether the point at t is in the clip box with room to spare.
+    fn surely_inside(&self, ray: &Ray, t: f64) -> bool {
+        let p = ray.origin + ray.direction * t;
+        (0..3).all(|i| {
+            let row = &self.inverse[0].rows[i];
+            let x = row[0][0] * p.x + row[1][0] * p.y + row[2][0] * p.z + row[3][0];
+            x - self.clip.lower[i] > self.margin && self.clip.upper[i] - x > self.margin
+        })
+    }
+
     /// One lane, exactly.
     #[cold]
     fn decide(&self, packet: &Packet, lane: usize, answers: &mut Answers) {
-        let at = |v: &[[f64; WIDTH]; 3]| DVec3::from_array(v.map(|axis| axis[lane]));
-        let ray = Ray {
-            origin: at(&packet.origin),
-            direction: at(&packet.direction),
-        };
+        let ray = packet.ray(lane);
         let start = if packet.leaving >> lane & 1 == 1 {
             ExactStart::OnSurface(packet.roundoff)
         } else {
@@ -225,7 +305,7 @@ impl Certified {
         };
         let limits = [packet.t_min[lane], packet.t_max[lane]];
         let bit = 1 << lane;
-        match exact::first_hit(self, &ray, limits, start) {
+        match exact::first_hit(self, &ray, limits, start, answers.doubt[lane]) {
             Some(root) => {
                 answers.found |= bit;
                 answers.absent &= !bit;
@@ -251,6 +331,33 @@ impl Answers {
         self.low[lane] = from.low[lane];
         self.high[lane] = from.high[lane];
         self.multiplicity[lane] = from.multiplicity[lane];
+        self.doubt[lane] = from.doubt[lane];
+        self.stretch[lane] = from.stretch[lane];
+    }
+}
+
+/// How far from where a search ended a root is guessed, relative to the stretch: a double root is
+/// found to half of a double-double's digits and less, a triple one to a third.
+const GUESS_WIDTHS: [f64; 2] = [1.0 / (1u64 << 34) as f64, 1.0 / (1u64 << 22) as f64];
+
+/// The number of fewest bits within an interval of finite numbers.
+fn simplest(low: f64, high: f64) -> Option<f64> {
+    if !(low < high && low.is_finite() && high.is_finite()) {
+        return None;
+    }
+    if low <= 0.0 && high >= 0.0 {
+        return Some(0.0);
+    }
+    if high < 0.0 {
+        return simplest(-high, -low).map(|x| -x);
+    }
+    let mut step = power_of_two(binary_exponent(high));
+    loop {
+        let x = (high / step).floor() * step;
+        if x >= low {
+            return Some(x);
+        }
+        step *= 0.5;
     }
 }
 

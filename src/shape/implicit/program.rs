@@ -15,7 +15,7 @@ pub mod bounds;
 use num_bigint::BigInt;
 use num_integer::Integer;
 use num_rational::BigRational;
-use num_traits::{One, Zero};
+use num_traits::{One, ToPrimitive, Zero};
 
 use super::tape::{Binary, Operation, Tape, Unary};
 use crate::math::number::Number;
@@ -112,20 +112,26 @@ impl Program {
         self.rows
     }
 
-    /// Integer coefficients of a positive multiple of the field in the variables of the given
-    /// forms: those of the coordinates, and the one that is 1.
-    pub fn exact(&self, coordinates: &[[BigInt; 2]; 3], one: &[BigInt; 2]) -> Vec<BigInt> {
-        let mut rows = vec![BigInt::zero(); self.rows];
+    /// Coefficients of a positive multiple of the field, lowest power first and none above the
+    /// given one, where the coordinates are (a + b t) / scale with integers a, b and scale > 0;
+    /// `None` where the integers overflow.
+    pub fn powers<N: Whole>(
+        &self,
+        coordinates: &[[N; 2]; 3],
+        scale: &N,
+        highest: usize,
+    ) -> Option<Vec<N>> {
+        let mut rows = vec![N::default(); self.rows];
         for step in &self.steps {
             match step {
                 Step::Coordinate { axis, to } => {
                     rows[to.at..to.at + 2].clone_from_slice(&coordinates[*axis]);
                 }
                 Step::Product { a, b, to } => {
-                    for i in 0..=a.degree {
-                        for j in 0..=b.degree {
-                            let product = &rows[a.at + i] * &rows[b.at + j];
-                            rows[to.at + i + j] += product;
+                    for i in 0..=a.degree.min(highest) {
+                        for j in 0..=b.degree.min(highest - i) {
+                            let product = rows[a.at + i].times(&rows[b.at + j])?;
+                            rows[to.at + i + j] = rows[to.at + i + j].plus(&product)?;
                         }
                     }
                 }
@@ -134,37 +140,77 @@ impl Program {
                     constant,
                     to,
                 } => {
-                    let mut sum = vec![constant.exact.clone()];
+                    let mut sum = vec![N::default(); to.degree.min(highest) + 1];
+                    sum[0] = N::of(&constant.exact)?;
+                    let mut degree = 0;
                     for (factor, form) in terms {
-                        while sum.len() <= form.degree {
-                            sum = elevated(&sum, one);
-                        }
-                        for (i, s) in sum.iter_mut().enumerate() {
-                            *s += &factor.exact * &rows[form.at + i];
+                        raise(&mut sum, form.degree - degree, scale)?;
+                        degree = form.degree;
+                        let factor = N::of(&factor.exact)?;
+                        for (i, s) in sum.iter_mut().enumerate().take(degree + 1) {
+                            *s = s.plus(&factor.times(&rows[form.at + i])?)?;
                         }
                     }
-                    while sum.len() <= to.degree {
-                        sum = elevated(&sum, one);
-                    }
-                    rows[to.at..=to.at + to.degree].clone_from_slice(&sum);
+                    raise(&mut sum, to.degree - degree, scale)?;
+                    rows[to.at..to.at + sum.len()].clone_from_slice(&sum);
                 }
             }
         }
-        rows[self.result.at..=self.result.at + self.result.degree].to_vec()
+        let result = &rows[self.result.at..=self.result.at + self.result.degree.min(highest)];
+        Some(result.to_vec())
     }
 }
 
-/// A form times the form that is 1.
-fn elevated(form: &[BigInt], one: &[BigInt; 2]) -> Vec<BigInt> {
-    let mut result = vec![BigInt::zero(); form.len() + 1];
-    for (i, c) in form.iter().enumerate() {
-        for (j, o) in one.iter().enumerate() {
-            if !o.is_zero() {
-                result[i + j] += c * o;
-            }
+/// Raises a form by some degrees: the form that is 1 is the scale, at any t.
+fn raise<N: Whole>(form: &mut [N], degrees: usize, scale: &N) -> Option<()> {
+    for _ in 0..degrees {
+        for c in form.iter_mut() {
+            *c = c.times(scale)?;
         }
     }
-    result
+    Some(())
+}
+
+/// Integers; operations give `None` where their range ends.
+pub trait Whole: Clone + Default {
+    /// An integer.
+    fn of(x: &BigInt) -> Option<Self>;
+    /// Sum.
+    fn plus(&self, other: &Self) -> Option<Self>;
+    /// Product.
+    fn times(&self, other: &Self) -> Option<Self>;
+    /// Whether it is 0.
+    fn vanishes(&self) -> bool;
+}
+
+impl Whole for BigInt {
+    fn of(x: &BigInt) -> Option<Self> {
+        Some(x.clone())
+    }
+    fn plus(&self, other: &Self) -> Option<Self> {
+        Some(self + other)
+    }
+    fn times(&self, other: &Self) -> Option<Self> {
+        Some(self * other)
+    }
+    fn vanishes(&self) -> bool {
+        self.is_zero()
+    }
+}
+
+impl Whole for i128 {
+    fn of(x: &BigInt) -> Option<Self> {
+        x.to_i128()
+    }
+    fn plus(&self, other: &Self) -> Option<Self> {
+        self.checked_add(*other)
+    }
+    fn times(&self, other: &Self) -> Option<Self> {
+        self.checked_mul(*other)
+    }
+    fn vanishes(&self) -> bool {
+        *self == 0
+    }
 }
 
 /// Which of the algebra's atoms.

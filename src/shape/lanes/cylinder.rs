@@ -1,7 +1,7 @@
 //! The capped cylinder x² + y² ≤ 1, |z| ≤ 1 in lanes.
 
-use super::{LaneRay, LaneShape, LaneSurface, Span, reach, slab};
-use crate::math::lanes::{Lanes, Mask, Real, Scalar};
+use super::{Enclosure, LaneRay, LaneShape, LaneSurface, Span, reach, slab};
+use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
 use crate::math::vec3::Vec3;
 
 /// The side as a circle about the foot of the perpendicular in the plane (bounds as for the
@@ -10,8 +10,12 @@ use crate::math::vec3::Vec3;
 pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
     let u = <L::Scalar as Scalar>::ROUNDOFF;
     let one = l.real(1.0);
-    let o = shape.inverse.point(l, ray.origin);
-    let d = shape.inverse.vector(l, ray.direction);
+    let row = inlined(
+        #[inline(always)]
+        |i: usize| shape.inverse.row(l, i, ray.origin, ray.direction),
+    );
+    let ((ox, dx), (oy, dy), (oz, dz)) = (row(0), row(1), row(2));
+    let (o, d) = (Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
     let (e0, dd) = shape.largest_errors(l, ray, 2);
 
     let across = d.x.mul_add(d.x, d.y * d.y);
@@ -28,10 +32,10 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     let root = c.max(l.real(0.0)).sqrt();
     let half = root * inverse_length;
     let along = q.mul_add(l.real(6.0), e * l.real(4.0));
-    let mut side_error =
-        (c_error / root + along).mul_add(inverse_length, (foot_t.abs() + half) * l.real(8.0 * u));
-    let mut side_near = foot_t - half;
-    let mut side_far = foot_t + half;
+    let side_error =
+        (c_error / root + along).mul_add(inverse_length, (foot_t.abs() + half) * l.real(9.0 * u));
+    let mut side_near = Enclosure::<L>::about(foot_t - half, side_error);
+    let mut side_far = Enclosure::<L>::about(foot_t + half, side_error);
     let mut side_hit = c.gt(c_error);
     let mut side_miss = c.lt(-c_error);
     // Along the axis the relative error of the direction across it is unbounded.
@@ -42,9 +46,14 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
             * l.real(1.0 + 1e-6);
         let radius = o.x.mul_add(o.x, o.y * o.y).sqrt();
         let far = l.real(f64::INFINITY);
-        side_near = l.select(parallel, -far, side_near);
-        side_far = l.select(parallel, far, side_far);
-        side_error = l.select(parallel, l.real(0.0), side_error);
+        side_near = Enclosure {
+            low: l.select(parallel, -far, side_near.low),
+            high: l.select(parallel, -far, side_near.high),
+        };
+        side_far = Enclosure {
+            low: l.select(parallel, far, side_far.low),
+            high: l.select(parallel, far, side_far.high),
+        };
         let inside = (radius + drift).lt(one);
         let outside = (radius - drift).gt(one);
         side_hit = (side_hit & !parallel) | (parallel & inside);
@@ -60,21 +69,20 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
         #[inline(always)]
         || reach(l, shape, ray, o, d),
     );
-    let near = side_near.max(caps.near);
-    let far = side_far.min(caps.far);
-    let latest_entry = (side_near + side_error).max(caps.near + caps.error);
-    let earliest_entry = (side_near - side_error).max(caps.near - caps.error);
-    let earliest_exit = (side_far - side_error).min(caps.far - caps.error);
-    let latest_exit = (side_far + side_error).min(caps.far + caps.error);
-    let error = (latest_entry - near)
-        .max(near - earliest_entry)
-        .max((latest_exit - far).max(far - earliest_exit));
+    let near = Enclosure {
+        low: side_near.low.max(caps.near.low),
+        high: side_near.high.max(caps.near.high),
+    };
+    let far = Enclosure {
+        low: side_far.low.min(caps.far.low),
+        high: side_far.high.min(caps.far.high),
+    };
     Span {
         near,
         far,
-        error,
-        hit: side_hit & latest_entry.lt(earliest_exit) & !caps.lost & !caps.outside,
-        miss: side_miss | caps.outside | (side_hit & earliest_entry.gt(latest_exit) & !caps.lost),
+        hit: side_hit & near.high.lt(far.low) & !caps.lost & !caps.outside,
+        miss: side_miss | caps.outside | (side_hit & near.low.gt(far.high) & !caps.lost),
+        parts: [l.int(0); 2],
     }
 }
 

@@ -1,12 +1,20 @@
 //! Rectangle, disk and plane in lanes: z = 0 and a test of where.
 
-use super::{LaneRay, LaneShape, Span};
-use crate::math::lanes::{Lanes, Real, Scalar};
+use super::{Enclosure, LaneRay, LaneShape, Span};
+use crate::math::affine::Affine;
+use crate::math::lanes::{Lanes, Real, Scalar, inlined};
 
 /// The part of z = 0 that a flat shape covers.
 pub trait Outline {
-    /// Whether (x, y), each within `error`, is certainly inside and certainly outside.
-    fn contains<L: Lanes>(l: L, x: L::Real, y: L::Real, error: L::Real) -> (L::Mask, L::Mask);
+    /// Whether the point (x/z, y/z), with each of x, y and z > 0 within `margin` together, is
+    /// certainly inside and certainly outside.
+    fn contains<L: Lanes>(
+        l: L,
+        x: L::Real,
+        y: L::Real,
+        z: L::Real,
+        margin: L::Real,
+    ) -> (L::Mask, L::Mask);
 }
 
 /// |x| ≤ 1, |y| ≤ 1.
@@ -14,10 +22,15 @@ pub struct Rectangle;
 
 impl Outline for Rectangle {
     #[inline(always)]
-    fn contains<L: Lanes>(l: L, x: L::Real, y: L::Real, error: L::Real) -> (L::Mask, L::Mask) {
-        let one = l.real(1.0);
-        let farther = x.abs().max(y.abs());
-        ((farther + error).lt(one), (farther - error).gt(one))
+    fn contains<L: Lanes>(
+        _l: L,
+        x: L::Real,
+        y: L::Real,
+        z: L::Real,
+        margin: L::Real,
+    ) -> (L::Mask, L::Mask) {
+        let depth = z - x.abs().max(y.abs());
+        (depth.gt(margin), depth.lt(-margin))
     }
 }
 
@@ -25,16 +38,22 @@ impl Outline for Rectangle {
 pub struct Disk;
 
 impl Outline for Disk {
+    /// The distance of (x, y) from its exact place is at most √2 of the margin, and 1½ pays for
+    /// the arithmetic of the squares as well.
     #[inline(always)]
-    fn contains<L: Lanes>(l: L, x: L::Real, y: L::Real, e: L::Real) -> (L::Mask, L::Mask) {
-        let one = l.real(1.0);
+    fn contains<L: Lanes>(
+        l: L,
+        x: L::Real,
+        y: L::Real,
+        z: L::Real,
+        margin: L::Real,
+    ) -> (L::Mask, L::Mask) {
+        let u = <L::Scalar as Scalar>::ROUNDOFF;
         let squared = x.mul_add(x, y * y);
-        // |(x+δ)² − x²| ≤ (2|x| + e) e, twice, and 4u for the arithmetic.
-        let two = l.real(2.0);
-        let error = ((x.abs() + y.abs() + e) * e * two
-            + squared * l.real(4.0 * <L::Scalar as Scalar>::ROUNDOFF))
-            * l.real(1.0 + 1e-6);
-        ((squared + error).lt(one), (squared - error).gt(one))
+        let margin = z.mul_add(l.real(4.0 * u), margin * l.real(1.5));
+        let (low, high) = (z - margin, z + margin);
+        let inside = low.gt(l.real(0.0)) & squared.lt(low * low);
+        (inside, squared.gt(high * high))
     }
 }
 
@@ -43,41 +62,69 @@ pub struct Plane;
 
 impl Outline for Plane {
     #[inline(always)]
-    fn contains<L: Lanes>(l: L, _x: L::Real, _y: L::Real, _error: L::Real) -> (L::Mask, L::Mask) {
-        (l.mask(true), l.mask(false))
+    fn contains<L: Lanes>(
+        l: L,
+        _x: L::Real,
+        _y: L::Real,
+        z: L::Real,
+        margin: L::Real,
+    ) -> (L::Mask, L::Mask) {
+        (z.gt(margin), l.mask(false))
     }
 }
 
-/// t = −o_z/d_z within 2 (E_z + |t| D_z)/|d_z| + 4u|t| (first order, doubled for the rest while
-/// D_z ≤ |d_z|/4). x and y come from the world point o + t d: they are within R δt (|d| = 1, so
-/// the slope is at most the row's sum R) + 2 (E + |t| D) + 4u, with E, D and R the larger of their
-/// rows' and 4u for 4u|x|, which only matters where |x| is about 1.
+/// The constant and the factor of max|o| in the margin of the test of where.
+///
+/// The line meets z = 0 at x/z with x = o_x d_z − o_z d_x and z = |d_z|, without a division. With
+/// Aᵢ = Rᵢ s + |bᵢ| ≥ |oᵢ|, Rᵢ ≥ |dᵢ|, Eᵢ = 6u (Aᵢ + 1) and Dᵢ = 6u Rᵢ, x is off by at most
+/// |o_x| D_z + |d_z| E_x + |o_z| D_x + |d_x| E_z + 2u (|o_x d_z| + |o_z d_x|)
+/// ≤ u (14 (A_x R_z + A_z R_x) + 6 (R_x + R_z)), and z by 6u R_z. Of that, 24u R_z are counted, so that
+/// |d_z| > 4 D_z wherever the line is found inside; one twentieth pays for terms in u² and for the
+/// evaluation of the margin.
+pub fn margins<T: Scalar>(inverse: &Affine) -> [f64; 2] {
+    let sum = |i: usize| {
+        let r = &inverse.rows[i];
+        r[0].abs() + r[1].abs() + r[2].abs()
+    };
+    let shift = |i: usize| inverse.rows[i][3].abs();
+    let unit = 1.05 * T::ROUNDOFF;
+    let across = |i: usize| {
+        let constant =
+            14.0 * (shift(i) * sum(2) + shift(2) * sum(i)) + 6.0 * sum(i) + 30.0 * sum(2);
+        [unit * constant, unit * 28.0 * sum(i) * sum(2)]
+    };
+    let (x, y) = (across(0), across(1));
+    [x[0].max(y[0]), x[1].max(y[1])]
+}
+
+/// t = −o_z/d_z within 2 (E_z + |t| D_z)/|d_z| + 5u|t| (first order, doubled for the rest while
+/// D_z ≤ |d_z|/4, which [`margins`] sees to; 5u pay for the arithmetic up to the rounded ends).
 #[inline(always)]
 pub fn span<L: Lanes, O: Outline>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
     let u = <L::Scalar as Scalar>::ROUNDOFF;
-    let two = l.real(2.0);
-    let inverse = &shape.inverse;
-    let oz = inverse.row_point(l, 2, ray.origin);
-    let dz = inverse.row_dot(l, 2, ray.direction);
-    let z_error = l.splat(shape.direction_error[2]);
+    let row = inlined(
+        #[inline(always)]
+        |i: usize| shape.inverse.row(l, i, ray.origin, ray.direction),
+    );
+    let ((ox, dx), (oy, dy), (oz, dz)) = (row(0), row(1), row(2));
+    let [constant, factor] = shape.margins;
+    let margin = ray.extent.mul_add(l.splat(factor), l.splat(constant));
+    let x = ox.mul_add(dz, -(oz * dx));
+    let y = oy.mul_add(dz, -(oz * dy));
+    let slope = dz.abs();
+    let (inside, outside) = O::contains(l, x, y, slope, margin);
     let reciprocal = l.real(1.0) / dz;
     let t = -(oz * reciprocal);
     let distance = t.abs();
-    let e = distance.mul_add(z_error, shape.origin_error(l, ray, 2)) * two;
-    let error = e.mul_add(reciprocal.abs(), distance * l.real(4.0 * u));
-    let bounded = dz.abs().gt(z_error * l.real(4.0));
-    let (e, d) = shape.largest_errors(l, ray, 2);
-    let slope = d * l.real(1.0 / (6.0 * u));
-    let across = error.mul_add(slope, distance.mul_add(d, e).mul_add(two, l.real(4.0 * u)));
-    let p = ray.origin.along(ray.direction, t);
-    let x = inverse.row_point(l, 0, p);
-    let y = inverse.row_point(l, 1, p);
-    let (inside, outside) = O::contains(l, x, y, across);
+    let z_error = l.splat(shape.direction_error[2]);
+    let e = distance.mul_add(z_error, shape.origin_error(l, ray, 2)) * l.real(2.0);
+    let error = e.mul_add(reciprocal.abs(), distance * l.real(5.0 * u));
+    let at = Enclosure::about(t, error);
     Span {
-        near: t,
-        far: t,
-        error,
-        hit: bounded & inside,
-        miss: bounded & outside,
+        near: at,
+        far: at,
+        hit: inside,
+        miss: outside,
+        parts: [l.int(0); 2],
     }
 }

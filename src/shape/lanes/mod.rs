@@ -19,6 +19,7 @@ use crate::shape::ShapeKind;
 
 pub mod field;
 pub mod implicit;
+pub mod part;
 
 /// Rays of a packet; directions are unit up to rounding.
 #[derive(Clone, Copy)]
@@ -29,16 +30,39 @@ pub struct LaneRay<L: Lanes> {
     pub direction: Vec3<L::Real>,
     /// Largest magnitude of an origin's coordinates.
     pub extent: L::Real,
+    /// 1/|direction|².
+    pub inverse_square: L::Real,
 }
 
 impl<L: Lanes> LaneRay<L> {
     /// A ray with its extent.
     #[inline(always)]
-    pub fn new(origin: Vec3<L::Real>, direction: Vec3<L::Real>) -> Self {
+    pub fn new(l: L, origin: Vec3<L::Real>, direction: Vec3<L::Real>) -> Self {
         Self {
             origin,
             direction,
             extent: origin.max_abs(),
+            inverse_square: l.real(1.0) / direction.length_squared(),
+        }
+    }
+}
+
+/// An interval that holds a number.
+#[derive(Clone, Copy)]
+pub struct Enclosure<L: Lanes> {
+    /// Lower end.
+    pub low: L::Real,
+    /// Upper end.
+    pub high: L::Real,
+}
+
+impl<L: Lanes> Enclosure<L> {
+    /// x within `error`.
+    #[inline(always)]
+    pub fn about(x: L::Real, error: L::Real) -> Self {
+        Self {
+            low: x - error,
+            high: x + error,
         }
     }
 }
@@ -46,16 +70,16 @@ impl<L: Lanes> LaneRay<L> {
 /// Where a line enters and leaves a convex shape, with bounds.
 #[derive(Clone, Copy)]
 pub struct Span<L: Lanes> {
-    /// Entry.
-    pub near: L::Real,
-    /// Exit; equal to the entry for flat shapes.
-    pub far: L::Real,
-    /// Bound on the error of either.
-    pub error: L::Real,
+    /// Entry, where the line meets the shape.
+    pub near: Enclosure<L>,
+    /// Exit; that of flat shapes is the entry.
+    pub far: Enclosure<L>,
     /// The line certainly meets the shape.
     pub hit: L::Mask,
-    /// The line certainly misses it.
+    /// The line certainly misses it, or meets it only behind the origin.
     pub miss: L::Mask,
+    /// Which of the shape's parts it enters and leaves by, if it meets it.
+    pub parts: [L::Int; 2],
 }
 
 /// A placed shape as lanes use it.
@@ -73,6 +97,10 @@ pub struct LaneShape<T> {
     pub direction_error: [T; 3],
     /// 6u (|bᵢ| + 1).
     pub offset_error: [T; 3],
+    /// Bounds of a flat shape's plane test, see [`flat::margins`].
+    margins: [T; 2],
+    /// A sphere that is one in the world too.
+    ball: Option<sphere::Ball<T>>,
 }
 
 impl<T: Scalar> LaneShape<T> {
@@ -89,6 +117,8 @@ impl<T: Scalar> LaneShape<T> {
                 .rows
                 .map(|r| T::from_f64(unit * (r[0].abs() + r[1].abs() + r[2].abs()))),
             offset_error: inverse.rows.map(|r| T::from_f64(unit * (r[3].abs() + 1.0))),
+            margins: flat::margins::<T>(inverse).map(T::from_f64),
+            ball: sphere::Ball::new(forward),
         }
     }
 
@@ -130,30 +160,22 @@ impl<T: Scalar> LaneShape<T> {
             Some(ShapeKind::Rectangle) => flat::span::<L, flat::Rectangle>(l, self, ray),
             Some(ShapeKind::Plane) => flat::span::<L, flat::Plane>(l, self, ray),
             None => Span {
-                near: l.real(0.0),
-                far: l.real(0.0),
-                error: l.real(0.0),
+                near: Enclosure::about(l.real(0.0), l.real(0.0)),
+                far: Enclosure::about(l.real(0.0), l.real(0.0)),
                 hit: l.mask(false),
                 miss: l.mask(true),
+                parts: [l.int(0); 2],
             },
         }
     }
 
-    /// What a hit near the world point p looks like.
+    /// What a hit near the world point p looks like, for shapes whose part is
+    /// [`part::PartKind::Other`].
     #[inline(always)]
     pub fn surface<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> LaneSurface<L> {
         match self.kind {
-            Some(ShapeKind::Sphere) => sphere::surface(l, self, p),
-            Some(ShapeKind::Cube) => cube::surface(l, self, p),
             Some(ShapeKind::Cylinder) => cylinder::surface(l, self, p),
-            Some(ShapeKind::Disk | ShapeKind::Rectangle | ShapeKind::Plane) | None => {
-                let plane = &self.planes[2];
-                let normal = plane.normal(l);
-                LaneSurface {
-                    point: plane.onto(l, normal, p, l.splat(plane.middle)),
-                    normal,
-                }
-            }
+            _ => sphere::surface(l, self, p),
         }
     }
 
@@ -202,32 +224,13 @@ impl<T: Scalar> Planes<T> {
             half: T::from_f64(1.0 / length),
         }
     }
-
-    #[inline(always)]
-    fn normal<L: Lanes<Scalar = T>>(&self, l: L) -> Vec3<L::Real> {
-        let [x, y, z] = self.normal;
-        Vec3::new(l.splat(x), l.splat(y), l.splat(z))
-    }
-
-    /// The foot of p on the plane n · p = level.
-    #[inline(always)]
-    fn onto<L: Lanes<Scalar = T>>(
-        &self,
-        _l: L,
-        normal: Vec3<L::Real>,
-        p: Vec3<L::Real>,
-        level: L::Real,
-    ) -> Vec3<L::Real> {
-        p.along(normal, level - normal.dot(p))
-    }
 }
 
 /// Crossings of one slab |x| ≤ 1 of the local ray, with bounds.
 #[derive(Clone, Copy)]
 struct Slab<L: Lanes> {
-    near: L::Real,
-    far: L::Real,
-    error: L::Real,
+    near: Enclosure<L>,
+    far: Enclosure<L>,
     /// Lanes for which even the bounds mean nothing.
     lost: L::Mask,
     /// The line runs outside of the slab.
@@ -250,15 +253,15 @@ fn slab<L: Lanes>(
     let t1 = (-one - o) * inverse;
     let t2 = (one - o) * inverse;
     let largest = t1.abs().max(t2.abs());
-    // First order (e + |t| dd)/|d|, doubled for the rest while dd ≤ |d|/4; 4u for the arithmetic.
+    // First order (e + |t| dd)/|d|, doubled for the rest while dd ≤ |d|/4; 5u for the arithmetic
+    // up to the rounded ends.
     let error = (largest.mul_add(dd, e) * inverse.abs()).mul_add(
         l.real(2.0),
-        largest * l.real(4.0 * <L::Scalar as Scalar>::ROUNDOFF),
+        largest * l.real(5.0 * <L::Scalar as Scalar>::ROUNDOFF),
     );
     let mut slab = Slab {
-        near: t1.min(t2),
-        far: t1.max(t2),
-        error,
+        near: Enclosure::about(t1.min(t2), error),
+        far: Enclosure::about(t1.max(t2), error),
         lost: l.mask(false),
         outside: l.mask(false),
     };
@@ -269,9 +272,12 @@ fn slab<L: Lanes>(
         let inside = parallel & (o.abs() + drift).lt(one);
         let outside = parallel & (o.abs() - drift).gt(one);
         let far = l.real(f64::INFINITY);
-        slab.near = l.select(parallel, -far, slab.near);
-        slab.far = l.select(parallel, far, slab.far);
-        slab.error = l.select(parallel, l.real(0.0), slab.error);
+        for end in [&mut slab.near.low, &mut slab.near.high] {
+            *end = l.select(parallel, -far, *end);
+        }
+        for end in [&mut slab.far.low, &mut slab.far.high] {
+            *end = l.select(parallel, far, *end);
+        }
         slab.lost = parallel & !inside & !outside;
         slab.outside = outside;
     }

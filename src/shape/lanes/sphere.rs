@@ -1,11 +1,57 @@
 //! The unit sphere in lanes.
 
-use super::{LaneRay, LaneShape, LaneSurface, Span};
-use crate::math::lanes::{Lanes, Real, Scalar};
+use super::{Enclosure, LaneRay, LaneShape, LaneSurface, Span};
+use crate::math::affine::Affine;
+use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 
+/// A sphere whose placement only scales it alike along all axes and moves it.
+#[derive(Debug, Clone, Copy)]
+pub struct Ball<T> {
+    /// Its centre.
+    pub centre: [T; 3],
+    /// Its radius.
+    pub radius: T,
+    radius_squared: T,
+    /// 6u (|c| + r): what the centre's rounding and the ray's cost beside 6u max|o|.
+    offset_error: T,
+    /// 8/r.
+    curvature: T,
+}
+
+impl<T: Scalar> Ball<T> {
+    /// The ball that the map makes of the unit sphere, if it does.
+    pub fn new(forward: &Affine) -> Option<Self> {
+        let [x, y, z] = &forward.rows;
+        let radius = x[0].abs();
+        let straight = [x[1], x[2], y[0], y[2], z[0], z[1]]
+            .iter()
+            .all(|m| *m == 0.0);
+        if !straight || y[1].abs() != radius || z[2].abs() != radius {
+            return None;
+        }
+        let largest = x[3].abs().max(y[3].abs()).max(z[3].abs());
+        Some(Self {
+            centre: [x[3], y[3], z[3]].map(T::from_f64),
+            radius: T::from_f64(radius),
+            radius_squared: T::from_f64(radius * radius),
+            offset_error: T::from_f64(6.5 * T::ROUNDOFF * (largest + radius)),
+            curvature: T::from_f64(8.0 / radius),
+        })
+    }
+}
+
+/// Where the lines meet the sphere.
+#[inline(always)]
+pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
+    match &shape.ball {
+        Some(ball) => ball_span(l, ball, ray),
+        None => ellipsoid_span(l, shape, ray),
+    }
+}
+
 /// The discriminant from the foot of the perpendicular (Haines, Günther and Akenine-Möller, "Precision
-/// Improvements for Ray/Sphere Intersection", Ray Tracing Gems ch. 7, 2019).
+/// Improvements for Ray/Sphere Intersection", Ray Tracing Gems ch. 7, 2019), in canonical coordinates.
 ///
 /// Let e = E + |t₀| D with t₀ the foot's parameter, and q = D/|d|, the relative error of the
 /// direction, below ⅛. The foot f moves across the ray by δo + t₀ δd, at most √3 e; and along it,
@@ -14,7 +60,7 @@ use crate::math::vec3::Vec3;
 /// more times q: so |f|² is within (8e + 8u + 64q²) max(1, |f|²) + 16 e² of its exact value. Where
 /// q ≥ ⅛ that is more than 1 and more than |f|², and nothing is decided.
 #[inline(always)]
-pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
+fn ellipsoid_span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
     let u = <L::Scalar as Scalar>::ROUNDOFF;
     let o = shape.inverse.point(l, ray.origin);
     let d = shape.inverse.vector(l, ray.direction);
@@ -35,14 +81,56 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     // |f| and √c are below 1; then rounding.
     let along = q.mul_add(l.real(6.0), e * l.real(4.0));
     let error =
-        (c_error / root + along).mul_add(inverse_length, (foot_t.abs() + half) * l.real(8.0 * u));
+        (c_error / root + along).mul_add(inverse_length, (foot_t.abs() + half) * l.real(9.0 * u));
     Span {
-        near: foot_t - half,
-        far: foot_t + half,
-        error,
+        near: Enclosure::about(foot_t - half, error),
+        far: Enclosure::about(foot_t + half, error),
         hit: c.gt(c_error),
         miss: c.lt(-c_error),
+        parts: [l.int(0); 2],
     }
+}
+
+/// The same about the centre in world units, for a ball. Canonical coordinates would be those about
+/// the centre over r, so that the bounds above, times r or r², hold with E r = 6u (max|o| + |c| + r),
+/// D r = 6u, and q = D r, where 64q² is less than u.
+///
+/// Packets that surely pass the ball or leave it behind skip the roots.
+#[inline(always)]
+fn ball_span<L: Lanes>(l: L, ball: &Ball<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
+    let u = <L::Scalar as Scalar>::ROUNDOFF;
+    let [cx, cy, cz] = ball.centre;
+    let o = ray.origin - Vec3::new(l.splat(cx), l.splat(cy), l.splat(cz));
+    let foot_t = -(o.dot(ray.direction) * ray.inverse_square);
+    let foot = o.along(ray.direction, foot_t);
+    let squared = foot.length_squared();
+    let radius_squared = l.splat(ball.radius_squared);
+    let c = radius_squared - squared;
+    let unit = l.real(6.5 * u);
+    let e = (foot_t.abs() + ray.extent).mul_add(unit, l.splat(ball.offset_error));
+    let relative = e.mul_add(l.splat(ball.curvature), l.real(9.0 * u));
+    let c_error = (e * e).mul_add(l.real(16.0), relative * squared.max(radius_squared));
+    // Behind: the far end is at most t₀ + δt₀ + r, with 5e for δt₀ and its rounding.
+    let radius = l.splat(ball.radius);
+    let behind = foot_t.lt(-e.mul_add(l.real(5.0), radius.mul_add(l.real(50.0 * u), radius)));
+    let miss = c.lt(-c_error) | behind;
+    let mut span = Span {
+        near: Enclosure::about(foot_t, l.real(0.0)),
+        far: Enclosure::about(foot_t, l.real(0.0)),
+        hit: c.gt(c_error),
+        miss,
+        parts: [l.int(0); 2],
+    };
+    if (!miss).any() {
+        let half = (c.max(l.real(0.0)) * ray.inverse_square).sqrt();
+        let along = l
+            .splat(ball.radius)
+            .mul_add(l.real(40.0 * u), e * l.real(4.0));
+        let error = (foot_t.abs() + half).mul_add(l.real(9.0 * u), c_error / half + along);
+        span.near = Enclosure::about(foot_t - half, error);
+        span.far = Enclosure::about(foot_t + half, error);
+    }
+    span
 }
 
 /// The canonical point scaled to length 1, which is also the canonical normal.

@@ -3,10 +3,12 @@
 use std::cmp::Ordering;
 
 use num_bigint::BigInt;
-use num_traits::{One, Signed, Zero};
+use num_traits::{One, Signed, ToPrimitive, Zero};
 
+use super::super::program::{Program, Whole};
 use super::Certified;
 use crate::math::exact::Exact;
+use crate::math::number::power_of_two;
 use crate::root::exact::{ExactRoot, Point, Stretch, first_root};
 use crate::shape::Ray;
 use crate::shape::ladder::ScaledRay;
@@ -100,31 +102,34 @@ impl IntegerRay {
     }
 }
 
-/// The first hit of a ray, with its multiplicity; t in units of the direction.
+/// The first hit of a ray, with its multiplicity, perhaps near the hint; t in units of the
+/// direction.
 pub(super) fn first_hit(
     placed: &Certified,
     ray: &Ray,
     limits: [f64; 2],
     start: ExactStart,
+    hint: f64,
 ) -> Option<ExactRoot> {
     if !ray.is_valid() || limits[0].is_nan() || limits[1].is_nan() {
         return None;
     }
     let scaled = ScaledRay::new(ray);
-    let unit = crate::math::number::power_of_two(scaled.exponent());
+    let unit = power_of_two(scaled.exponent());
     let line = IntegerRay::new(placed, &scaled);
     let stretch = line.stretch(placed, limits.map(|t| t * unit))?;
     let coordinates = [0, 1, 2].map(|i| [line.origin[i].clone(), line.direction[i].clone()]);
-    let one = [line.scale.clone(), BigInt::zero()];
+    let hint = Some(hint * unit).filter(|x| x.is_finite());
     let mut first: Option<ExactRoot> = None;
     for factor in &placed.factors {
-        let mut coefficients = factor.program.exact(&coordinates, &one);
+        let degree = factor.program.result().degree;
+        let mut coefficients = factor.program.powers(&coordinates, &line.scale, degree)?;
         if let ExactStart::OnSurface(roundoff) = start
             && is_start(&coefficients, roundoff)
         {
             coefficients = beyond_start(coefficients);
         }
-        let Some(root) = first_root(&coefficients, &stretch) else {
+        let Some(root) = first_root(&coefficients, &stretch, hint) else {
             continue;
         };
         let root = ExactRoot {
@@ -141,6 +146,75 @@ pub(super) fn first_hit(
         enclosure: root.enclosure.map(|t| t / unit),
         ..root
     })
+}
+
+/// How many times t is a root of the field along the ray, 0 where it is none; t is in units of the
+/// direction.
+pub(super) fn order_of_vanishing(
+    placed: &Certified,
+    program: &Program,
+    ray: &Ray,
+    t: f64,
+) -> usize {
+    let scaled = ScaledRay::new(ray);
+    let line = IntegerRay::new(placed, &scaled);
+    let at = Point::of(t * power_of_two(scaled.exponent()));
+    // (o + (t + τ) d) / s = (o q + p d + τ' d) / (s q) for t = p / q and τ' = q τ.
+    let (p, q) = (&at.numerator, &at.denominator);
+    let mut points = [0, 1, 2].map(|i| &line.origin[i] * q + &line.direction[i] * p);
+    let mut scale = [&line.scale * q];
+    let mut directions = line.direction;
+    // Powers of two that are common are of no concern.
+    let shift = trailing(points.iter().chain(&scale));
+    points
+        .iter_mut()
+        .chain(&mut scale)
+        .for_each(|x| *x >>= shift);
+    let shift = trailing(directions.iter());
+    directions.iter_mut().for_each(|x| *x >>= shift);
+    let degree = program.result().degree;
+    let coordinates: [[BigInt; 2]; 3] =
+        [0, 1, 2].map(|i| [points[i].clone(), directions[i].clone()]);
+    let small = small(&coordinates, &scale[0]);
+    // Mostly the first two powers decide, and machine integers hold them.
+    for highest in [1, 2, 4, degree] {
+        let highest = highest.min(degree);
+        let quick = small.as_ref().and_then(|(coordinates, scale)| {
+            Some(first_other_than_zero(&program.powers(
+                coordinates,
+                scale,
+                highest,
+            )?))
+        });
+        let order = quick.unwrap_or_else(|| {
+            let powers = program.powers(&coordinates, &scale[0], highest);
+            powers.map_or(Some(0), |powers| first_other_than_zero(&powers))
+        });
+        if let Some(order) = order {
+            return order;
+        }
+    }
+    0
+}
+
+fn first_other_than_zero<N: Whole>(powers: &[N]) -> Option<usize> {
+    powers.iter().position(|c| !c.vanishes())
+}
+
+fn trailing<'a>(numbers: impl Iterator<Item = &'a BigInt>) -> u64 {
+    numbers
+        .filter_map(BigInt::trailing_zeros)
+        .min()
+        .unwrap_or(0)
+}
+
+/// The same numbers as machine integers, if they fit.
+fn small(coordinates: &[[BigInt; 2]; 3], scale: &BigInt) -> Option<([[i128; 2]; 3], i128)> {
+    let mut small = [[0; 2]; 3];
+    for (to, from) in small.iter_mut().flatten().zip(coordinates.iter().flatten()) {
+        *to = from.to_i128()?;
+    }
+    Some((small, scale.to_i128()?))
 }
 
 /// The earlier root; of two that f64 cannot tell apart, what holds for both.

@@ -284,6 +284,7 @@ fn square<L: DoubleLanes, W: Word<L>>(
 struct Question<L: DoubleLanes> {
     error: L::Real,
     start_error: L::Real,
+    roots_at_end: usize,
     on_root: L::Mask,
     active: L::Mask,
 }
@@ -306,6 +307,7 @@ impl<L: DoubleLanes> Question<L> {
                         error: self.error,
                         on_root: self.on_root,
                         start_error: self.start_error,
+                        roots_at_end: self.roots_at_end,
                         active: self.active,
                     },
                 )
@@ -324,6 +326,7 @@ struct Combined<L: DoubleLanes> {
     low: L::Real,
     high: L::Real,
     multiplicity: L::Real,
+    doubt: L::Real,
 }
 
 impl<L: DoubleLanes> Combined<L> {
@@ -339,6 +342,7 @@ impl<L: DoubleLanes> Combined<L> {
             low: infinite,
             high: infinite,
             multiplicity: l.real(0.0),
+            doubt: infinite,
         }
     }
 
@@ -362,6 +366,7 @@ impl<L: DoubleLanes> Combined<L> {
         let question = Question {
             error,
             start_error: rounding.mul_add(l.real(bounds.change), error + error),
+            roots_at_end: packet.roots_at_end,
             on_root: l.mask_from_bits(packet.leaving),
             active: self.open & !self.undecided,
         };
@@ -391,6 +396,7 @@ impl<L: DoubleLanes> Combined<L> {
         self.low = l.select(first, low, self.low);
         self.high = l.select(roots.found, high.min(self.high), self.high);
         self.found = self.found | roots.found;
+        self.doubt = roots.doubt.mul_add(width, clipped.near);
         self.undecided = self.undecided | (question.active & !roots.found & !roots.absent);
     }
 
@@ -426,6 +432,8 @@ impl<L: DoubleLanes> Combined<L> {
         };
         l.store(self.t.max(low).min(high), &mut answers.t);
         l.store(low, &mut answers.low);
+        l.store(self.doubt, &mut answers.doubt);
+        l.store(clipped.far - clipped.near, &mut answers.stretch);
         l.store(high, &mut answers.high);
         let mut multiplicity = [0.0; WIDTH];
         l.store(self.multiplicity, &mut multiplicity);

@@ -150,6 +150,19 @@ impl Certified {
         })
     }
 
+    /// The same with the bounds of rounding errors left out: to show that they are needed.
+    #[must_use]
+    pub fn without_bounds(mut self) -> Self {
+        for bounds in self
+            .factors
+            .iter_mut()
+            .flat_map(|factor| &mut factor.bounds)
+        {
+            (bounds.error, bounds.change) = (0.0, 0.0);
+        }
+        self
+    }
+
     /// Largest number of coefficients of a factor's forms.
     pub(super) fn rows(&self) -> usize {
         let rows = self.factors.iter().map(|factor| factor.program.rows());

@@ -1,0 +1,95 @@
+//! Which objects can stand between a surface and a light.
+//!
+//! A shadow ray runs from a point of a surface that samples lights to a point of a light. A flat
+//! object with all of those on one side of its plane, the walls of a room, say, meets no such ray
+//! but at its ends, and a ray's own light does not hide its own point. What remains is tested.
+
+use glam::DVec3;
+
+use super::extent::{about_camera, columns, translation};
+use crate::math::affine::Affine;
+use crate::scene::{Light, Scene, Shape, Surface};
+
+/// Points relative to a plane: the range of their signed distances.
+type Range = [f64; 2];
+
+/// The objects that shadow rays have to be tested against, in order; `lit` are the objects whose
+/// light is sampled, `roundoff` that of the coordinates of hits.
+pub fn occluders(scene: &Scene, lit: &[u32], roundoff: f64) -> Vec<u32> {
+    let placed: Vec<Affine> = scene
+        .objects
+        .iter()
+        .map(|o| about_camera(scene, &o.value))
+        .collect();
+    let is_end = |k: usize| {
+        let material = &scene.materials[scene.objects[k].value.material].value;
+        let samples = matches!(
+            material.surface,
+            Surface::Diffuse(_) | Surface::Checkerboard { .. }
+        );
+        samples || lit.contains(&(k as u32))
+    };
+    let hides = |k: usize| {
+        if scene.lights.is_empty() && lit.iter().all(|&light| light as usize == k) {
+            return false;
+        }
+        let Some((normal, height)) = plane(&scene.objects[k].value.shape, &placed[k]) else {
+            return true;
+        };
+        let ends = (0..placed.len()).filter(|&i| i != k && is_end(i));
+        let objects = ends.map(|i| range(&scene.objects[i].value.shape, &placed[i], normal));
+        let lights = scene.lights.iter().map(|light| match light {
+            Light::Point { at, .. } => [normal.dot(*at - scene.camera.from); 2],
+            // From any end, the ray leaves towards where the light comes from.
+            Light::Directional { direction, .. } => match normal.dot(-*direction) {
+                0.0 => [height; 2],
+                away if away > 0.0 => [height, f64::INFINITY],
+                _ => [f64::NEG_INFINITY, height],
+            },
+        });
+        let [low, high] = objects.chain(lights).fold([height; 2], |[low, high], r| {
+            [low.min(r[0]), high.max(r[1])]
+        });
+        // What stands out by less than the rounding of a hit's coordinates (6 unit roundoffs of the
+        // largest, as in `shape::lanes`) cannot be told from the plane.
+        let reach = translation(&placed[k]).abs().max_element();
+        let blur = 6.0 * roundoff * (reach + height.abs());
+        low < height - blur && high > height + blur
+    };
+    (0..placed.len())
+        .filter(|&k| hides(k))
+        .map(|k| k as u32)
+        .collect()
+}
+
+/// Unit normal and height of the plane of a flat shape.
+fn plane(shape: &Shape, to_world: &Affine) -> Option<(DVec3, f64)> {
+    if !matches!(shape, Shape::Disk | Shape::Rectangle | Shape::Plane) {
+        return None;
+    }
+    let [a, b, _] = columns(to_world);
+    let normal = a.cross(b).try_normalize()?;
+    Some((normal, normal.dot(translation(to_world))))
+}
+
+/// The range of normal · p over an object: of its image for the canonical shapes, of the image of
+/// its box for implicit surfaces.
+fn range(shape: &Shape, to_world: &Affine, normal: DVec3) -> Range {
+    let along = DVec3::from_array(columns(to_world).map(|axis| axis.dot(normal)));
+    let mut middle = normal.dot(translation(to_world));
+    let half = match shape {
+        Shape::Sphere => along.length(),
+        Shape::Cube => along.abs().element_sum(),
+        Shape::Cylinder => along.truncate().length() + along.z.abs(),
+        Shape::Disk => along.truncate().length(),
+        Shape::Rectangle => along.truncate().abs().element_sum(),
+        Shape::Plane if along.truncate() == glam::DVec2::ZERO => 0.0,
+        Shape::Plane => f64::INFINITY,
+        Shape::Implicit(implicit) => {
+            let [low, high] = implicit.inside;
+            middle += along.dot((low + high) / 2.0);
+            along.abs().dot((high - low) / 2.0)
+        }
+    };
+    [middle - half, middle + half]
+}
