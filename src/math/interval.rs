@@ -231,7 +231,7 @@ impl<L: DoubleLanes> Interval<L> {
             return Self::splat(l, [1.0, 1.0]);
         }
         let count = n.unsigned_abs();
-        let power = if count % 2 == 0 {
+        let power = if count.is_multiple_of(2) {
             self.absolute().nonnegative_power(count)
         } else {
             // Odd powers are monotone: each bound is the power of a bound.
@@ -255,7 +255,7 @@ impl<L: DoubleLanes> Interval<L> {
     fn nonnegative_power(self, count: u32) -> Self {
         let mut square = self;
         let mut left = count;
-        while left % 2 == 0 {
+        while left.is_multiple_of(2) {
             square = square.nonnegative_product(square);
             left /= 2;
         }
