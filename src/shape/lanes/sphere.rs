@@ -117,7 +117,7 @@ fn ball_span<L: Lanes>(l: L, ball: &Ball<L::Scalar>, ray: &LaneRay<L>) -> Span<L
     let mut span = Span {
         near: Enclosure::about(foot_t, l.real(0.0)),
         far: Enclosure::about(foot_t, l.real(0.0)),
-        hit: c.gt(c_error),
+        hit: c.gt(c_error) & !behind,
         miss,
         parts: [l.int(0); 2],
     };
