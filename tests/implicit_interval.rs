@@ -273,3 +273,50 @@ fn boxes_are_surveyed() {
     );
     assert!(survey("log(x) - 3").maybe_undefined);
 }
+
+/// Where a field jumps from one sign to the other there is no surface: poles and the cut of the
+/// angle are looked at from both sides, and neither found nor left undecided.
+#[test]
+fn jumps_are_no_hits() {
+    let along = |text: &str, direction: DVec3| {
+        let row = Row {
+            id: text.to_owned(),
+            shape: String::new(),
+            ray: Ray {
+                origin: direction * -5.0 + DVec3::new(0.1, 0.2, 0.3) - 0.1 * DVec3::X,
+                direction,
+            },
+            t_min: 0.0,
+            first: None,
+        };
+        let field = EnclosedField::new(&parse(text, &[]).unwrap().tape);
+        first_hit(&field, 2.0, &row, &Searching::default())
+    };
+    let oblique = DVec3::new(0.8, 0.6, 0.0);
+    for text in [
+        "1/x",
+        "1/x^3 + x",
+        "tan(x) + tan(x)^3",
+        "-1/x + 1/(7*x)",
+        "x^-5 + x^-3/2",
+    ] {
+        let outcome = along(text, DVec3::X);
+        let zero_at_origin = text.starts_with("tan");
+        if zero_at_origin {
+            assert!(matches!(outcome, Outcome::Found(_)), "{text}: {outcome:?}");
+        } else {
+            assert_eq!(outcome, Outcome::Absent, "{text}");
+        }
+    }
+    // tan has its pole at π/2 within the box, before any zero when the ray starts there.
+    assert_eq!(along("tan(x + 3/2) - 20", -DVec3::X), {
+        // One zero: x = arctan 20 − 3/2 = 0.0208, reached at t = 5 − 0.0208.
+        let found = along("tan(x + 3/2) - 20", -DVec3::X);
+        assert!(matches!(found, Outcome::Found(root)
+            if (root.enclosure[0] - (5.0 - (20f64.atan() - 1.5))).abs() < 1e-9));
+        found
+    });
+    // The angle jumps by 2π at y = 0, x < 0, where z − angle/4 has no zero for z = 0.3.
+    let crossing = along("z + atan2(y, x - 9)", oblique);
+    assert_eq!(crossing, Outcome::Absent);
+}

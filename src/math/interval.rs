@@ -379,7 +379,14 @@ pub struct Domain<L: DoubleLanes> {
     pub broken: L::Mask,
     /// The function is undefined everywhere in the interval.
     pub void: L::Mask,
+    /// For operations that may jump, in order: lanes that take the one side of the jump.
+    sides: [L::Mask; SIDES],
+    /// The next of them.
+    next: usize,
 }
+
+/// Jumps whose sides are looked at apart: 2³ combinations fill eight lanes.
+const SIDES: usize = 3;
 
 impl<L: DoubleLanes> Domain<L> {
     /// Defined and continuous everywhere.
@@ -388,7 +395,30 @@ impl<L: DoubleLanes> Domain<L> {
         Self {
             broken: l.mask(false),
             void: l.mask(false),
+            sides: [l.mask(false); SIDES],
+            next: 0,
         }
+    }
+
+    /// The same, for lanes from `place` on of eight that take all combinations of sides.
+    #[inline(always)]
+    pub fn with_sides(l: L, place: usize) -> Self {
+        let side = crate::math::lanes::inlined(
+            #[inline(always)]
+            |bits: u32| l.mask_from_bits(bits >> place),
+        );
+        Self {
+            sides: [side(0xaa), side(0xcc), side(0xf0)],
+            ..Self::unbroken(l)
+        }
+    }
+
+    /// The sides of the next operation that may jump; none left after three.
+    #[inline(always)]
+    pub fn next_side(&mut self) -> Option<L::Mask> {
+        let side = self.sides.get(self.next).copied();
+        self.next += 1;
+        side
     }
 
     /// Notes where an operation may be undefined or jump, and where it surely is undefined.

@@ -33,6 +33,11 @@ pub trait Enclosed {
     fn over(&mut self, from: &[f64; PIECES], to: &[f64; PIECES]) -> Pieces;
     /// Lower and upper bounds of the values at points.
     fn at(&mut self, t: &[f64; PIECES]) -> [[f64; PIECES]; 2];
+    /// Whether the function, which jumps in [from, to], is proved to have no zero on either side
+    /// of its jumps.
+    fn jumps_over_zero(&mut self, _from: f64, _to: f64) -> bool {
+        false
+    }
 }
 
 /// A finder's answer, and what it cost.
@@ -149,10 +154,17 @@ impl<F: Enclosed> State<'_, F> {
                     if self.evaluations >= self.bound {
                         return Outcome::Undecided;
                     }
+                    let [a, b] = ends;
+                    if broken && self.jumps_over_zero(a.t, b.t) {
+                        if cluster.is_some() {
+                            return Outcome::Undecided;
+                        }
+                        before = 0;
+                        continue;
+                    }
                     if self.cut(ends, &mut parts) {
                         continue;
                     }
-                    let [a, b] = ends;
                     let known = if a.sign() == 0 { before } else { a.sign() };
                     let cluster = cluster.get_or_insert(Cluster {
                         from: a.t,
@@ -175,6 +187,15 @@ impl<F: Enclosed> State<'_, F> {
         } else {
             Outcome::Absent
         }
+    }
+
+    /// Not asked of the whole stretch, of which nothing is known yet.
+    fn jumps_over_zero(&mut self, from: f64, to: f64) -> bool {
+        if self.evaluations == 1 {
+            return false;
+        }
+        self.evaluations += 1;
+        self.function.jumps_over_zero(from, to)
     }
 
     /// Cuts a part and puts the pieces in its place; false where that tells nothing new.

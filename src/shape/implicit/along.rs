@@ -1,6 +1,6 @@
 //! A field along a line, enclosed.
 
-use super::interval_program::IntervalProgram;
+use super::interval_program::{IntervalProgram, Side};
 use crate::math::instructions::DoubleLanes;
 use crate::math::interval::{Interval, ScalarInterval, bits, down, up};
 use crate::math::jet::Jet;
@@ -36,6 +36,7 @@ pub struct Along<'a, L: DoubleLanes> {
     line: &'a EnclosedLine,
     values: Vec<Interval<L>>,
     jets: Vec<Jet<L>>,
+    sides: Vec<Side<L>>,
 }
 
 impl<'a, L: DoubleLanes> Along<'a, L> {
@@ -47,6 +48,8 @@ impl<'a, L: DoubleLanes> Along<'a, L> {
             line,
             values: Vec::with_capacity(program.registers()),
             jets: Vec::with_capacity(program.registers()),
+            // Few fields jump.
+            sides: Vec::new(),
         }
     }
 
@@ -128,6 +131,30 @@ impl<L: DoubleLanes> Enclosed for Along<'_, L> {
             },
         );
         pieces
+    }
+
+    fn jumps_over_zero(&mut self, from: f64, to: f64) -> bool {
+        let lanes = self.lanes;
+        let mut clear = true;
+        stage(
+            lanes,
+            #[inline(always)]
+            || {
+                let s = Interval::splat(lanes, [from, to]);
+                let coordinates = [
+                    self.coordinate(0, &s),
+                    self.coordinate(1, &s),
+                    self.coordinate(2, &s),
+                ];
+                for place in (0..PIECES).step_by(L::COUNT) {
+                    let (value, void) =
+                        self.program
+                            .sides(lanes, &coordinates, place, &mut self.sides);
+                    clear &= bits(value.may_be_zero() & !void) == 0;
+                }
+            },
+        );
+        clear
     }
 
     #[inline(always)]

@@ -15,6 +15,8 @@ const WRONG: Rgb<u8> = Rgb([210, 30, 40]);
 const UNDECIDED: Rgb<u8> = Rgb([240, 170, 0]);
 const UNKNOWN: Rgb<u8> = Rgb([120, 0, 160]);
 const FRAME: u32 = 4;
+/// Pixels of the first look.
+const COARSE: u32 = 64;
 
 /// How many pixels of a finder's map are what.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,16 +32,21 @@ pub struct MapCount {
 /// Paints the maps side by side, each `size` pixels wide and high, with the counts; `None` where
 /// the surface cannot be placed.
 ///
-/// The camera looks along parallel rays from (2, −3, 1) at the whole clip cube. The truth is that
-/// of `auto`.
+/// The camera looks along parallel rays from (2, −3, 1) at the surface within its clip cube. The
+/// truth is that of `auto`.
 pub fn map(shape: &OracleShape, size: u32) -> Option<(RgbImage, Vec<MapCount>)> {
     let truth_finder = Contestant::Proved(FinderChoice::Auto).ready(shape)?;
     let mut workspace = Workspace::default();
-    let rays = rays(shape.half_width, size);
-    let truth: Vec<Answer> = rays
-        .iter()
-        .map(|ray| truth_finder.first_hit(ray, 0.0, &mut workspace))
-        .collect();
+    let mut look = |reach: f64, size: u32| -> (Vec<Ray>, Vec<Answer>) {
+        let rays = rays(shape.half_width, reach, size);
+        let answers = rays.iter();
+        let answers = answers.map(|ray| truth_finder.first_hit(ray, 0.0, &mut workspace));
+        let answers = answers.collect();
+        (rays, answers)
+    };
+    // A first look at the whole cube tells how large the surface is in the picture.
+    let (_, coarse) = look(1.0, COARSE);
+    let (rays, truth) = look(filled(&coarse), size);
     let count = CONTESTANTS.len() as u32;
     let columns = 4;
     let rows = count.div_ceil(columns);
@@ -77,16 +84,35 @@ fn judged(answer: Answer, truth: Answer, half_width: f64) -> Rgb<u8> {
     }
 }
 
-/// Parallel rays through the pixels, row by row from the top.
-fn rays(half_width: f64, size: u32) -> Vec<Ray> {
+/// The share of the first look's half width that the surface fills, and a margin of two pixels.
+fn filled(coarse: &[Answer]) -> f64 {
+    let half = f64::from(COARSE) / 2.0;
+    let distance = |i: u32| (f64::from(i) + 0.5 - half).abs();
+    let hits = (0..)
+        .zip(coarse)
+        .filter(|(_, answer)| matches!(answer, Answer::Hit(_)));
+    let farthest = hits
+        .map(|(i, _)| distance(i % COARSE).max(distance(i / COARSE)))
+        .fold(0.0, f64::max);
+    if farthest > 0.0 {
+        ((farthest + 2.0) / half).min(1.0)
+    } else {
+        1.0
+    }
+}
+
+/// Parallel rays through the pixels, row by row from the top; `reach` is the half width of the
+/// picture in half diagonals of the clip cube.
+fn rays(half_width: f64, reach: f64, size: u32) -> Vec<Ray> {
     let forward = -DVec3::new(2.0, -3.0, 1.0).normalize();
     let right = forward.cross(DVec3::Z).normalize();
     let up = right.cross(forward);
     // The cube's half diagonal is √3 half widths.
-    let reach = 3f64.sqrt() * half_width;
+    let diagonal = 3f64.sqrt() * half_width;
+    let reach = reach * diagonal;
     let pixel = |i: u32| (f64::from(i) + 0.5) / f64::from(size) * 2.0 - 1.0;
     let ray = |x: u32, y: u32| Ray {
-        origin: reach * (right * pixel(x) - up * pixel(y) - 2.0 * forward),
+        origin: reach * (right * pixel(x) - up * pixel(y)) - 2.0 * diagonal * forward,
         direction: forward,
     };
     (0..size)
