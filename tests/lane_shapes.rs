@@ -56,7 +56,7 @@ impl Job for Spans<'_> {
                         Vec3::splat(l, case.ray.origin),
                         Vec3::splat(l, case.ray.direction),
                     );
-                    shape.span(l, &ray)
+                    shape.span(l, &ray, l.mask(true))
                 },
             );
             let lane = |x| l.lane(x, 0).to_f64();

@@ -78,13 +78,11 @@ impl Job for Ask<'_> {
                             [u, v, sample.wavelength, s, t]
                         }
                         What::Pair(slot, depth) => {
-                            let slot = slot.at(l, l.int(depth));
-                            let [u, v] = self.sequence.pair(l, id, slot);
+                            let [u, v] = self.sequence.pair(l, id, slot, l.int(depth));
                             [u, v, zero, zero, zero]
                         }
                         What::Single(slot, depth) => {
-                            let slot = slot.at(l, l.int(depth));
-                            let u = self.sequence.single(l, id, slot);
+                            let u = self.sequence.single(l, id, slot, l.int(depth));
                             [u, zero, zero, zero, zero]
                         }
                     };

@@ -155,8 +155,7 @@ impl<L: Lanes> Search<L> {
         }
     }
 
-    /// Asks one object, for the lanes in `asked`; where that is `None`, for all of them, and what
-    /// is found for lanes without a ray means nothing.
+    /// Asks one object, for the lanes in `asked`.
     #[inline(always)]
     fn ask(
         &mut self,
@@ -165,18 +164,15 @@ impl<L: Lanes> Search<L> {
         k: u32,
         ray: &LaneRay<L>,
         leaving: &Leaving<L>,
-        asked: Option<L::Mask>,
+        asked: L::Mask,
     ) {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
         let index = l.int(k);
-        let span = shape.span(l, ray);
+        let span = shape.span(l, ray, asked);
         let own = leaving.object.same(index);
         let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
-        let mut possible = c.possible;
-        if let Some(asked) = asked {
-            possible = possible & asked;
-        }
+        let possible = c.possible & asked;
         if !possible.any() {
             return;
         }
@@ -203,40 +199,45 @@ impl<L: Lanes> Search<L> {
     ) {
         l.vectorize(
             #[inline(always)]
-            || self.ask(l, model, k, ray, leaving, Some(asked)),
+            || self.ask(l, model, k, ray, leaving, asked),
         );
     }
 
     /// Asks the objects whose boxes the rays meet, nearest boxes first, a round of one object a
     /// ray at a time.
-    #[inline(always)]
-    fn ask_many(
-        &mut self,
+    #[inline(never)]
+    fn of_many(
         l: L,
         model: &Model<L::Scalar>,
         many: &Many<L::Scalar>,
         ray: &LaneRay<L>,
         leaving: &Leaving<L>,
         active: L::Mask,
-    ) {
-        for &k in &many.unbounded {
-            self.ask_alone(l, model, k, ray, leaving, active);
-        }
-        let mut rays = Rounds::new(l, ray, active);
-        loop {
-            let limits = array(l, self.best.high);
-            let (mut pending, objects) = rays.next(many, active.bits(), &limits);
-            if pending == 0 {
-                return;
-            }
-            let objects = l.load_int(&objects);
-            while pending != 0 {
-                let k = l.int_lane(objects, pending.trailing_zeros() as usize);
-                let here = l.mask_from_bits(pending) & objects.same(l.int(k));
-                pending &= !here.bits();
-                self.ask_alone(l, model, k, ray, leaving, here);
-            }
-        }
+    ) -> Self {
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let mut search = Self::new(l);
+                for &k in &many.unbounded {
+                    search.ask_alone(l, model, k, ray, leaving, active);
+                }
+                let mut rays = Rounds::new(l, ray, active);
+                loop {
+                    let limits = array(l, search.best.high);
+                    let (mut pending, objects) = rays.next(many, active.bits(), &limits);
+                    if pending == 0 {
+                        return search;
+                    }
+                    let objects = l.load_int(&objects);
+                    while pending != 0 {
+                        let k = l.int_lane(objects, pending.trailing_zeros() as usize);
+                        let here = l.mask_from_bits(pending) & objects.same(l.int(k));
+                        pending &= !here.bits();
+                        search.ask_alone(l, model, k, ray, leaving, here);
+                    }
+                }
+            },
+        )
     }
 }
 
@@ -315,15 +316,16 @@ pub fn nearest<L: Lanes>(
     l.vectorize(
         #[inline(always)]
         || {
-            let mut search = Search::new(l);
-            match &model.hierarchy {
+            let search = match &model.hierarchy {
                 None => {
+                    let mut search = Search::new(l);
                     for k in 0..model.shapes.len() as u32 {
-                        search.ask(l, model, k, ray, leaving, None);
+                        search.ask(l, model, k, ray, leaving, active);
                     }
+                    search
                 }
-                Some(many) => search.ask_many(l, model, many, ray, leaving, active),
-            }
+                Some(many) => Search::of_many(l, model, many, ray, leaving, active),
+            };
             let high = search.best.high;
             let mut best = Nearest {
                 t: (search.best.low + high) * l.real(0.5),
@@ -385,7 +387,15 @@ struct Blocks<L: Lanes> {
 }
 
 impl<L: Lanes> Blocks<L> {
-    /// Asks one object, for the lanes in `asked`; for all of them where that is `None`.
+    #[inline(always)]
+    fn new(l: L) -> Self {
+        Self {
+            blocked: l.mask(false),
+            doubtful: l.mask(false),
+        }
+    }
+
+    /// Asks one object, for the lanes in `asked`.
     #[inline(always)]
     fn ask(
         &mut self,
@@ -394,18 +404,15 @@ impl<L: Lanes> Blocks<L> {
         k: u32,
         shadow: &Shadow<L>,
         leaving: &Leaving<L>,
-        asked: Option<L::Mask>,
+        asked: L::Mask,
     ) {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
         let index = l.int(k);
-        let span = shape.span(l, &shadow.ray);
+        let span = shape.span(l, &shadow.ray, asked);
         let own = leaving.object.same(index);
         let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
-        let mut counted = !shadow.except.same(index) & c.possible;
-        if let Some(asked) = asked {
-            counted = counted & asked;
-        }
+        let counted = c.possible & asked & !shadow.except.same(index);
         if !counted.any() {
             return;
         }
@@ -426,40 +433,45 @@ impl<L: Lanes> Blocks<L> {
     ) {
         l.vectorize(
             #[inline(always)]
-            || self.ask(l, model, k, shadow, leaving, Some(asked)),
+            || self.ask(l, model, k, shadow, leaving, asked),
         );
     }
 
     /// Asks the objects whose boxes the rays meet, until each ray is blocked or through.
-    #[inline(always)]
-    fn ask_many(
-        &mut self,
+    #[inline(never)]
+    fn of_many(
         l: L,
         model: &Model<L::Scalar>,
         many: &Many<L::Scalar>,
         shadow: &Shadow<L>,
         leaving: &Leaving<L>,
         active: L::Mask,
-    ) {
-        for &k in many.unbounded.iter().filter(|k| model.hides(**k)) {
-            self.ask_alone(l, model, k, shadow, leaving, active);
-        }
-        let mut rays = Rounds::new(l, &shadow.ray, active);
-        let limits = array(l, shadow.limit);
-        loop {
-            let open = active & !self.blocked;
-            let (mut pending, objects) = rays.next(many, open.bits(), &limits);
-            if pending == 0 {
-                return;
-            }
-            let objects = l.load_int(&objects);
-            while pending != 0 {
-                let k = l.int_lane(objects, pending.trailing_zeros() as usize);
-                let here = l.mask_from_bits(pending) & objects.same(l.int(k));
-                pending &= !here.bits();
-                self.ask_alone(l, model, k, shadow, leaving, here);
-            }
-        }
+    ) -> Self {
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let mut blocks = Self::new(l);
+                for &k in many.unbounded.iter().filter(|k| model.hides(**k)) {
+                    blocks.ask_alone(l, model, k, shadow, leaving, active);
+                }
+                let mut rays = Rounds::new(l, &shadow.ray, active);
+                let limits = array(l, shadow.limit);
+                loop {
+                    let open = active & !blocks.blocked;
+                    let (mut pending, objects) = rays.next(many, open.bits(), &limits);
+                    if pending == 0 {
+                        return blocks;
+                    }
+                    let objects = l.load_int(&objects);
+                    while pending != 0 {
+                        let k = l.int_lane(objects, pending.trailing_zeros() as usize);
+                        let here = l.mask_from_bits(pending) & objects.same(l.int(k));
+                        pending &= !here.bits();
+                        blocks.ask_alone(l, model, k, shadow, leaving, here);
+                    }
+                }
+            },
+        )
     }
 }
 
@@ -479,19 +491,16 @@ pub fn occluded<L: Lanes>(
     l.vectorize(
         #[inline(always)]
         || {
-            let nobody = l.mask(false);
-            let mut blocks = Blocks::<L> {
-                blocked: nobody,
-                doubtful: nobody,
-            };
-            match &model.hierarchy {
+            let blocks = match &model.hierarchy {
                 None => {
+                    let mut blocks = Blocks::new(l);
                     for &k in &model.occluders {
-                        blocks.ask(l, model, k, shadow, leaving, None);
+                        blocks.ask(l, model, k, shadow, leaving, active);
                     }
+                    blocks
                 }
-                Some(many) => blocks.ask_many(l, model, many, shadow, leaving, active),
-            }
+                Some(many) => Blocks::of_many(l, model, many, shadow, leaving, active),
+            };
             let Blocks {
                 mut blocked,
                 doubtful,

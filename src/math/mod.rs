@@ -12,5 +12,6 @@ pub mod lanes;
 pub mod lookup;
 pub mod number;
 pub mod scalar_lane;
+pub mod twice;
 pub mod vec3;
 pub mod words;

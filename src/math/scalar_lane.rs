@@ -9,6 +9,7 @@ use super::lookup::SMALL;
 pub struct One;
 
 impl Mask for bool {
+    const COUNT: u32 = 1;
     #[inline(always)]
     fn any(self) -> bool {
         self
@@ -216,11 +217,11 @@ impl Lanes for One {
         f64::from_bits((e + (4_503_599_627_370_496.0 + 1023.0)).to_bits() << 52)
     }
     #[inline(always)]
-    fn compress(self, x: f64, _: bool) -> f64 {
-        x
+    fn compress_into(self, x: f64, _: bool, to: &mut [f64]) {
+        to[0] = x;
     }
     #[inline(always)]
-    fn compress_int(self, x: u32, _: bool) -> u32 {
-        x
+    fn compress_int_into(self, x: u32, _: bool, to: &mut [u32]) {
+        to[0] = x;
     }
 }
