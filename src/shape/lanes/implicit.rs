@@ -11,7 +11,7 @@ use fearless_simd::Level;
 use glam::DVec3;
 
 use crate::math::affine::Affine;
-use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
+use crate::math::lanes::{Lanes, Mask, Real, Scalar, WIDEST, inlined};
 use crate::math::vec3::{Rows, Vec3};
 use crate::scene::Implicit;
 use crate::shape::SingularMatrix;
@@ -233,9 +233,6 @@ impl<T: Scalar> LaneImplicit<T> {
         )
     }
 }
-
-/// As many lanes as there can be.
-const WIDEST: usize = 16;
 
 /// The rays of a packet as memory.
 struct PacketRays<T> {
