@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::along::Along;
 use super::clip::{Clipped, clipped};
 use super::interval_program::IntervalProgram;
+use super::over_box::survey;
 use super::tape::Tape;
 use crate::math::double_double::DoubleDouble;
 use crate::math::instructions::{DoubleLanes, Instructions, Job};
@@ -22,9 +23,28 @@ pub const WORK_BOUND: u32 = 2_000;
 /// A field made ready for interval subdivision, as its factors.
 #[derive(Debug, Clone)]
 pub struct EnclosedField {
-    /// Programs and how often each is a factor.
-    factors: Vec<(IntervalProgram, u32)>,
+    factors: Vec<EnclosedFactor>,
     instructions: Instructions,
+}
+
+/// A factor of a field.
+#[derive(Debug, Clone)]
+struct EnclosedFactor {
+    program: IntervalProgram,
+    /// How often it is a factor.
+    multiplicity: u32,
+    /// An upper bound of its gradient's length over the box, where it is known.
+    steepness: f64,
+}
+
+impl EnclosedFactor {
+    fn new(tape: &Tape, multiplicity: u32) -> Self {
+        Self {
+            program: IntervalProgram::new(tape),
+            multiplicity,
+            steepness: f64::INFINITY,
+        }
+    }
 }
 
 impl EnclosedField {
@@ -35,14 +55,29 @@ impl EnclosedField {
 
     /// Compiles a field for an instruction set; the results are the same with each.
     pub fn with_instructions(tape: &Tape, instructions: Instructions) -> Self {
-        let factors = tape.factors().factors;
-        let compiled = factors
-            .iter()
-            .map(|f| (IntervalProgram::new(&f.tape), f.multiplicity));
+        let parts = tape.factors().factors;
+        let parts = parts.iter();
+        let mut factors: Vec<EnclosedFactor> = parts
+            .map(|part| EnclosedFactor::new(&part.tape, part.multiplicity))
+            .collect();
+        // A zero of one factor is one of the product only where the others are defined.
+        let total = factors.iter().all(|factor| factor.program.is_total());
+        if factors.len() != 1 && !total {
+            factors = vec![EnclosedFactor::new(tape, 1)];
+        }
         Self {
-            factors: compiled.collect(),
+            factors,
             instructions,
         }
+    }
+
+    /// With bounds of the factors' gradients over a box, which sphere tracing can use besides
+    /// those along the ray. The bound of a product is none of its factors.
+    pub fn surveyed(mut self, inside: &[DVec3; 2]) -> Self {
+        for factor in &mut self.factors {
+            factor.steepness = survey(&factor.program, inside).steepness;
+        }
+        self
     }
 
     /// The first zero on a ray inside a closed box with t_min < t < t_max, by a search.
@@ -95,10 +130,7 @@ pub enum Method {
     /// [`crate::root::interval`].
     Subdivision,
     /// [`crate::root::sphere_trace`].
-    Spheres {
-        /// An upper bound of the gradient's length over the box, see [`super::over_box`].
-        steepness: f64,
-    },
+    Spheres,
 }
 
 struct First<'a> {
@@ -110,7 +142,8 @@ struct First<'a> {
 impl First<'_> {
     /// The search of one factor, from where it may begin.
     #[inline(always)]
-    fn search<L: DoubleLanes>(&self, lanes: L, program: &IntervalProgram, to: f64) -> Search {
+    fn search<L: DoubleLanes>(&self, lanes: L, factor: &EnclosedFactor, to: f64) -> Search {
+        let program = &factor.program;
         let line = &self.clipped.line;
         let mut along = Along::new(lanes, program, line);
         let from = match self.searching.leaving {
@@ -136,8 +169,8 @@ impl First<'_> {
         let bound = self.searching.bound;
         match self.searching.method {
             Method::Subdivision => interval::first_zero(&mut along, [from, to], bound),
-            Method::Spheres { steepness } => {
-                let lipschitz = steepness * speed(self.clipped) * (1.0 + 4.0 * f64::EPSILON);
+            Method::Spheres => {
+                let lipschitz = factor.steepness * speed(self.clipped) * (1.0 + 4.0 * f64::EPSILON);
                 sphere_trace::first_zero(&mut along, [from, to], lipschitz, bound)
             }
         }
@@ -154,8 +187,8 @@ impl Job for First<'_> {
         let mut to = length.high;
         let mut first: Option<Root> = None;
         let mut evaluations = 0;
-        for (program, multiplicity) in &self.field.factors {
-            let search = self.search(lanes, program, to);
+        for factor in &self.field.factors {
+            let search = self.search(lanes, factor, to);
             evaluations += search.evaluations;
             match search.outcome {
                 Outcome::Absent => {}
@@ -167,7 +200,7 @@ impl Job for First<'_> {
                 }
                 Outcome::Found(root) => {
                     let root = Root {
-                        multiplicity: root.multiplicity.map(|m| m * multiplicity),
+                        multiplicity: root.multiplicity.map(|m| m * factor.multiplicity),
                         ..root
                     };
                     let joined = first.map_or(root, |first| earlier(&first, &root));

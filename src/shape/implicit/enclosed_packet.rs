@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use super::certified::{Answers, Packet, Tier, WIDTH};
 use super::enclosed::{EnclosedField, Method, Searching, WORK_BOUND};
-use super::over_box::over_box;
 use crate::math::affine::Affine;
 use crate::math::interval::ScalarInterval;
 use crate::math::number::{Number, power_of_two};
@@ -40,8 +39,9 @@ impl EnclosedPacket {
     /// # Errors
     /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
     pub fn by_spheres(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
-        let steepness = over_box(&implicit.field.tape, &implicit.inside).steepness;
-        Self::new(implicit, to_world, Method::Spheres { steepness })
+        let mut placed = Self::new(implicit, to_world, Method::Spheres)?;
+        placed.field = placed.field.surveyed(&implicit.inside);
+        Ok(placed)
     }
 
     fn new(implicit: &Implicit, to_world: &Affine, method: Method) -> Result<Self, SingularMatrix> {

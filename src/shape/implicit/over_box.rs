@@ -29,11 +29,12 @@ const PARTS: usize = 16;
 
 /// Encloses a field and its gradient over 16³ parts of a box.
 pub fn over_box(tape: &Tape, inside: &[DVec3; 2]) -> OverBox {
-    let program = IntervalProgram::new(tape);
-    Instructions::best().run(Survey {
-        program: &program,
-        inside,
-    })
+    survey(&IntervalProgram::new(tape), inside)
+}
+
+/// The same of a program.
+pub fn survey(program: &IntervalProgram, inside: &[DVec3; 2]) -> OverBox {
+    Instructions::best().run(Survey { program, inside })
 }
 
 struct Survey<'a> {

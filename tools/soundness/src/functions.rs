@@ -309,7 +309,7 @@ pub fn check(function: Function, seed: u64, count: usize, narrowed: bool) -> Opt
     let (first, broken) = results.next()?;
     let same = |other: &(Bounds, Vec<bool>)| first.same_bits(&other.0) && broken == other.1;
     report.different = results.filter(|other| !same(other)).count() as u64;
-    for i in 0..count {
+    for (i, broken) in broken.iter().enumerate() {
         let mut bounds = first.at(i);
         if narrowed {
             bounds = narrower(bounds);
@@ -319,7 +319,7 @@ pub fn check(function: Function, seed: u64, count: usize, narrowed: bool) -> Opt
             let good = match reference.value(function, x, y) {
                 Some(value) => holds(&value, bounds),
                 // The whole line and a note are all that a point outside the domain asks for.
-                None => broken[i] || !notes(function),
+                None => *broken || !notes(function),
             };
             if !good {
                 report.violated += 1;
