@@ -82,34 +82,33 @@ fn candidate<L: Lanes>(
     inward: L::Mask,
 ) -> Candidate<L> {
     let zero = l.real(0.0);
-    let Span { near, far, .. } = span;
-    if flat {
-        let possible = !(span.miss | own | near.high.lt(zero));
-        return Candidate {
-            at: Enclosure {
-                // The larger of NaN and 0 is 0: what is not known could be anywhere.
-                low: near.low.max(zero),
-                high: near.high,
-            },
-            certain: span.hit & near.low.gt(zero) & possible,
-            possible,
-            part: span.parts[0],
-        };
+    let Span {
+        mut near, far, hit, ..
+    } = *span;
+    let mut excluded = span.miss | own;
+    if !flat {
+        let inside = own & inward;
+        if inside.any() {
+            // The entering crossing is the start.
+            let behind = l.real(f64::NEG_INFINITY);
+            near.low = l.select(inside, behind, near.low);
+            near.high = l.select(inside, behind, near.high);
+            excluded = span.miss | (own & !inside);
+        }
     }
-    let own_inward = own & inward;
-    let possible = !(span.miss | far.high.lt(zero) | (own & !inward));
-    let enters = near.low.gt(zero) & !own_inward;
-    let leaves = (near.high.lt(zero) | own_inward) & far.low.gt(zero);
-    let certain = span.hit & (enters | leaves) & possible;
-    let low = l.select(enters, near.low, l.select(certain, far.low, near.low));
+    let leaves = near.high.lt(zero);
+    let low = l.select(leaves, far.low, near.low);
+    let high = l.select(leaves, far.high, near.high);
+    let possible = !(excluded | high.lt(zero));
     Candidate {
         at: Enclosure {
+            // The larger of NaN and 0 is 0: what is not known could be anywhere.
             low: low.max(zero),
-            high: l.select(enters, near.high, far.high),
+            high,
         },
-        certain,
+        certain: hit & possible & low.gt(zero),
         possible,
-        part: l.select_int(enters, span.parts[0], span.parts[1]),
+        part: l.select_int(leaves, span.parts[1], span.parts[0]),
     }
 }
 
@@ -169,13 +168,13 @@ impl<L: Lanes> Search<L> {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
         let index = l.int(k);
-        let span = shape.span(l, ray, asked);
+        let span = shape.span(l, ray, asked, self.best.high);
+        if !(asked & !span.miss).any() {
+            return;
+        }
         let own = leaving.object.same(index);
         let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
         let possible = c.possible & asked;
-        if !possible.any() {
-            return;
-        }
         let take = c.certain & possible & c.at.high.lt(self.best.high);
         // Of this crossing and the best so far, the one that is not taken remains a rival.
         let loser = l.select(take, self.best.low, c.at.low);
@@ -409,13 +408,13 @@ impl<L: Lanes> Blocks<L> {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
         let index = l.int(k);
-        let span = shape.span(l, &shadow.ray, asked);
+        let span = shape.span(l, &shadow.ray, asked, shadow.limit);
+        if !(asked & !span.miss).any() {
+            return;
+        }
         let own = leaving.object.same(index);
         let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
         let counted = c.possible & asked & !shadow.except.same(index);
-        if !counted.any() {
-            return;
-        }
         self.blocked = self.blocked | (c.certain & c.at.high.lt(shadow.limit) & counted);
         self.doubtful = self.doubtful | (c.at.low.lt(shadow.limit) & counted);
     }

@@ -76,7 +76,7 @@ pub struct Span<L: Lanes> {
     pub far: Enclosure<L>,
     /// The line certainly meets the shape.
     pub hit: L::Mask,
-    /// The line certainly misses it, or meets it only behind the origin.
+    /// The line certainly misses it, or meets it only behind the origin or beyond the limit.
     pub miss: L::Mask,
     /// Which of the shape's parts it enters and leaves by, if it meets it.
     pub parts: [L::Int; 2],
@@ -104,8 +104,9 @@ pub struct LaneShape<T> {
 }
 
 impl<T: Scalar> LaneShape<T> {
-    /// Rounds a placement whose inverse is given.
-    pub fn new(kind: Option<ShapeKind>, forward: &Affine, inverse: &Affine) -> Self {
+    /// Rounds a placement whose inverse is given; `reach` is the largest magnitude of a coordinate
+    /// among the points that rays usually start from.
+    pub fn new(kind: Option<ShapeKind>, forward: &Affine, inverse: &Affine, reach: f64) -> Self {
         // One more half unit roundoff in the bounds pays for rounding the bounds themselves.
         let unit = 6.5 * T::ROUNDOFF;
         Self {
@@ -118,7 +119,7 @@ impl<T: Scalar> LaneShape<T> {
                 .map(|r| T::from_f64(unit * (r[0].abs() + r[1].abs() + r[2].abs()))),
             offset_error: inverse.rows.map(|r| T::from_f64(unit * (r[3].abs() + 1.0))),
             margins: flat::margins::<T>(inverse).map(T::from_f64),
-            ball: sphere::Ball::new(forward),
+            ball: sphere::Ball::new(forward, reach),
         }
     }
 
@@ -150,10 +151,17 @@ impl<T: Scalar> LaneShape<T> {
     }
 
     /// Where the lines of the lanes in `asked` meet the shape; what is said of others means nothing.
+    /// A shape that lies beyond `limit` as a whole may be called missed.
     #[inline(always)]
-    pub fn span<L: Lanes<Scalar = T>>(&self, l: L, ray: &LaneRay<L>, asked: L::Mask) -> Span<L> {
+    pub fn span<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        ray: &LaneRay<L>,
+        asked: L::Mask,
+        limit: L::Real,
+    ) -> Span<L> {
         match self.kind {
-            Some(ShapeKind::Sphere) => sphere::span(l, self, ray),
+            Some(ShapeKind::Sphere) => sphere::span(l, self, ray, asked, limit),
             Some(ShapeKind::Cube) => cube::span(l, self, ray, asked),
             Some(ShapeKind::Cylinder) => cylinder::span(l, self, ray, asked),
             Some(ShapeKind::Disk) => flat::span::<L, flat::Disk>(l, self, ray),
