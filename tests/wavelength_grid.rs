@@ -67,7 +67,7 @@ fn flat<T: Scalar, const C: usize>() -> ([f64; 3], [f64; 3]) {
     let mut samples = Rows::<T, C>::new(rows);
     for row in 0..rows {
         samples.row[row] = row as u32;
-        samples.radiance[row] = [T::from_f64(1.0); C];
+        samples.paths[row].radiance = [T::from_f64(1.0); C];
     }
     let (mut sum, mut squares) = ([0.0; 3], [0.0; 3]);
     for row in 0..rows {

@@ -4,7 +4,8 @@ use super::chunk::CHUNK;
 use super::intersect::{Leaving, NOTHING, Nearest, Rungs, lane_vector, nearest};
 use super::model::{Model, Scatter};
 use super::pool::{
-    IntField, Pool, RealField, Rows, WIDEST, any, array, bit_where, each, flags, has, int_array,
+    Carried, IntField, Pool, RealField, Rows, WIDEST, any, array, bit_where, each, flags, has,
+    int_array,
 };
 use super::replay::{ScatteredVertex, Vertex};
 use super::scatter::Scattered;
@@ -45,7 +46,16 @@ pub struct Step<'a, L: Lanes, const C: usize> {
     pub id: Identity<L>,
 }
 
-/// Advances the packet at `at` by one segment and returns which of its lanes go on.
+/// Where in the pool a packet stands, and where its survivors go.
+#[derive(Debug, Clone, Copy)]
+pub struct Places {
+    /// The packet.
+    pub at: usize,
+    /// Its survivors, not after it.
+    pub to: usize,
+}
+
+/// Advances a packet by one segment and returns how many of its paths go on.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "the parts of one worker's state")]
 pub fn bounce<L: Lanes, const C: usize>(
@@ -54,12 +64,11 @@ pub fn bounce<L: Lanes, const C: usize>(
     pool: &mut Pool<L::Scalar>,
     rows: &mut Rows<L::Scalar, C>,
     beyond_slots: &mut Vec<u32>,
-    at: usize,
-    active: u32,
+    Places { at, to }: Places,
     rungs: &mut Rungs,
     trace: &mut Option<Vec<Vertex>>,
-) -> u32 {
-    let active = l.mask_from_bits(active);
+) -> usize {
+    let active = l.mask_from_bits(pool.active::<L>(at));
     let ray = LaneRay::<L>::new(
         l,
         vector(l, pool, RealField::Origin, at),
@@ -115,7 +124,7 @@ pub fn bounce<L: Lanes, const C: usize>(
     }
 
     let next = step.scatter(l, &ray, &surface, going);
-    let alive = step.roulette(l, going);
+    let alive = active & step.roulette(l, going);
     step.note_end(l, &next, alive);
 
     let kept = step.flags & l.int(flags::TERMINATED | flags::BEYOND);
@@ -124,17 +133,30 @@ pub fn bounce<L: Lanes, const C: usize>(
         | bit_where(l, next.specular, flags::SPECULAR);
     let slots = l.load_int(&step.slots);
     let depth = step.depth.plus(l.int(1));
-    set_vector(l, pool, RealField::Origin, at, surface.point);
-    set_vector(l, pool, RealField::Direction, at, next.direction);
-    pool.set_real(l, RealField::Pdf, 0, at, next.pdf);
-    pool.set_int(l, IntField::Departure, at, surface.object);
-    pool.set_int(l, IntField::Flags, at, flags);
-    pool.set_int(l, IntField::Depth, at, depth);
-    pool.set_int(l, IntField::Slot, at, slots);
+    for (field, v) in [
+        (RealField::Origin, surface.point),
+        (RealField::Direction, next.direction),
+    ] {
+        pool.keep_real(l, field, 0, to, (v.x, alive));
+        pool.keep_real(l, field, 1, to, (v.y, alive));
+        pool.keep_real(l, field, 2, to, (v.z, alive));
+    }
+    pool.keep_real(l, RealField::Pdf, 0, to, (next.pdf, alive));
+    for (field, x) in [
+        (IntField::Departure, surface.object),
+        (IntField::Flags, flags),
+        (IntField::Depth, depth),
+        (IntField::Key, step.id.key),
+        (IntField::Index, step.id.index),
+        (IntField::Slot, slots),
+        (IntField::Row, step.row),
+    ] {
+        pool.keep_int(l, field, to, (x, alive));
+    }
     if let (Some(trace), Some(vertex)) = (trace, vertex) {
         trace.push(vertex);
     }
-    alive.bits()
+    alive.bits().count_ones() as usize
 }
 
 #[inline(always)]
@@ -144,19 +166,6 @@ fn vector<L: Lanes>(l: L, pool: &Pool<L::Scalar>, field: RealField, at: usize) -
         pool.real(l, field, 1, at),
         pool.real(l, field, 2, at),
     )
-}
-
-#[inline(always)]
-fn set_vector<L: Lanes>(
-    l: L,
-    pool: &mut Pool<L::Scalar>,
-    field: RealField,
-    at: usize,
-    v: Vec3<L::Real>,
-) {
-    pool.set_real(l, field, 0, at, v.x);
-    pool.set_real(l, field, 1, at, v.y);
-    pool.set_real(l, field, 2, at, v.z);
 }
 
 /// An object's index unless it is [`NOTHING`].
@@ -188,16 +197,20 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             arrival_pdf: (!set(arrival.specular)).then(|| l.lane(arrival.pdf, 0).to_f64()),
             emission_weight: set(surface.emits)
                 .then(|| l.lane(surface.emission_weight, 0).to_f64()),
-            throughput: self.spectrum(&self.rows.throughput),
+            throughput: self.spectrum(&self.carried().throughput),
             light: None,
             scattered: None,
             radiance: Vec::new(),
         }
     }
 
-    /// Lane 0's row of a table of rows.
-    fn spectrum(&self, rows: &[[L::Scalar; C]]) -> Vec<f64> {
-        rows[self.slots[0] as usize].map(Scalar::to_f64).to_vec()
+    /// What lane 0 carries.
+    fn carried(&self) -> &Carried<L::Scalar, C> {
+        &self.rows.paths[self.slots[0] as usize]
+    }
+
+    fn spectrum(&self, row: &[L::Scalar; C]) -> Vec<f64> {
+        row.map(Scalar::to_f64).to_vec()
     }
 
     /// Writes down how lane 0 goes on.
@@ -209,9 +222,9 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             let scattered = goes_on.then(|| ScatteredVertex {
                 direction: lane_vector(l, next.direction, 0),
                 pdf: (!specular).then(|| l.lane(next.pdf, 0).to_f64()),
-                throughput: self.spectrum(&self.rows.throughput),
+                throughput: self.spectrum(&self.carried().throughput),
             });
-            let radiance = self.spectrum(&self.rows.radiance);
+            let radiance = self.spectrum(&self.carried().radiance);
             if let Some(vertex) = &mut self.vertex {
                 vertex.scattered = scattered;
                 vertex.radiance = radiance;
@@ -228,23 +241,20 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         }
         let (at, weights) = (self.table_rows(l, spectrum), array(l, weight));
         let table = self.model.spectra.rows::<C>();
-        let Rows {
-            throughput,
-            radiance,
-            ..
-        } = &mut *self.rows;
-        let (throughput, radiance) = (throughput.as_slice(), radiance.as_mut_slice());
+        let paths = self.rows.paths.as_mut_slice();
         for i in each(bits) {
-            let slot = self.slots[i % WIDEST] as usize;
             // Copies: arrays that cannot overlap become vectors.
             let values = table[at[i % WIDEST] as usize];
-            let carried = throughput[slot];
-            let mut sum = radiance[slot];
+            let path = &mut paths[self.slots[i % WIDEST] as usize];
+            let Carried {
+                throughput,
+                mut radiance,
+            } = *path;
             let weight = weights[i % WIDEST];
             for c in 0..C {
-                sum[c] = (carried[c] * weight).fused(values[c], sum[c]);
+                radiance[c] = (throughput[c] * weight).fused(values[c], radiance[c]);
             }
-            radiance[slot] = sum;
+            path.radiance = radiance;
         }
     }
 
@@ -253,15 +263,8 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     pub fn multiply_by(&mut self, l: L, m: L::Mask, spectrum: L::Int) {
         let at = self.table_rows(l, spectrum);
         let table = self.model.spectra.rows::<C>();
-        let throughput = self.rows.throughput.as_mut_slice();
         for i in each(m.bits()) {
-            let slot = self.slots[i % WIDEST] as usize;
-            let factors = table[at[i % WIDEST] as usize];
-            let mut carried = throughput[slot];
-            for c in 0..C {
-                carried[c] = carried[c] * factors[c];
-            }
-            throughput[slot] = carried;
+            self.multiply(i % WIDEST, &table[at[i % WIDEST] as usize]);
         }
     }
 
@@ -274,7 +277,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     /// Multiplies a lane's throughput by a spectrum of factors.
     #[inline(always)]
     pub fn multiply(&mut self, i: usize, factors: &[L::Scalar; C]) {
-        let throughput = &mut self.rows.throughput[self.slots[i] as usize];
+        let throughput = &mut self.rows.paths[self.slots[i] as usize].throughput;
         for c in 0..C {
             throughput[c] = throughput[c] * factors[c];
         }
@@ -283,7 +286,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     /// A lane's largest throughput over the wavelengths.
     #[inline(always)]
     fn largest(&self, i: usize) -> L::Scalar {
-        let mut throughput = self.rows.throughput[self.slots[i] as usize];
+        let mut throughput = self.rows.paths[self.slots[i] as usize].throughput;
         let mut width = C / 2;
         while width > 0 {
             for c in 0..width {
@@ -302,11 +305,10 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             let own = slot + CHUNK;
             let weight = L::Scalar::from_f64(1.0 / BEYOND_SHARE);
             let rows = &mut *self.rows;
-            rows.throughput[own] = rows.throughput[slot];
-            for value in &mut rows.throughput[own] {
-                *value = *value * weight;
-            }
-            rows.radiance[own] = [L::Scalar::default(); C];
+            rows.paths[own] = Carried {
+                throughput: rows.paths[slot].throughput.map(|value| value * weight),
+                ..Carried::new()
+            };
             rows.row[own] = rows.row[slot];
             rows.hero[own] = rows.hero[slot];
             rows.fraction[own] = rows.fraction[slot];
@@ -341,7 +343,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let survives = late & u.lt(survival);
         let rewards = array(l, one / survival);
         for i in each(survives.bits()) {
-            for value in &mut self.rows.throughput[self.slots[i] as usize] {
+            for value in &mut self.rows.paths[self.slots[i] as usize].throughput {
                 *value = *value * rewards[i];
             }
         }

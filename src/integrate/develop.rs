@@ -10,8 +10,8 @@ use crate::spectrum::observer;
 /// stands for, (number of cells × width of the cell)/C, over ∫ȳ.
 #[derive(Debug, Clone)]
 pub struct Spectrometer<T> {
-    /// By row of the wavelength grid: a row for X, one for Y and one for Z, side by side.
-    weights: Vec<T>,
+    /// By row of the wavelength grid and wavelength: for X, Y and Z, and a zero.
+    weights: Vec<[T; 4]>,
 }
 
 impl<T: Scalar> Spectrometer<T> {
@@ -27,38 +27,30 @@ impl<T: Scalar> Spectrometer<T> {
             })
             .collect();
         let rows = CELLS / wavelengths;
-        let mut weights = Vec::with_capacity(3 * CELLS);
-        for row in 0..rows {
-            for channel in 0..3 {
-                let cells = (0..wavelengths).map(|j| by_cell[j * rows + row][channel]);
-                weights.extend(cells.map(T::from_f64));
-            }
+        let weight = |row: usize, j: usize| {
+            let [x, y, z] = by_cell[j * rows + row];
+            [x, y, z, 0.0].map(T::from_f64)
+        };
+        Self {
+            weights: (0..rows)
+                .flat_map(|row| (0..wavelengths).map(move |j| (row, j)))
+                .map(|(row, j)| weight(row, j))
+                .collect(),
         }
-        Self { weights }
     }
 
     /// X, Y, Z of one sample.
     #[inline(always)]
     pub fn tristimulus<const C: usize>(&self, rows: &Rows<T, C>, slot: usize) -> [T; 3] {
-        let radiance = rows.radiance[slot];
-        let first = 3 * rows.row[slot] as usize;
-        let table: &[[T; C]] = self.weights.as_chunks().0;
-        let mut out = [T::default(); 3];
-        for (out, weights) in out.iter_mut().zip(&table[first..first + 3]) {
-            // Pairwise, so that the sum is the same tree whatever the vector width.
-            let mut terms = [T::default(); C];
-            for c in 0..C {
-                terms[c] = radiance[c] * weights[c];
+        let radiance = &rows.paths[slot].radiance;
+        let table: &[[[T; 4]; C]] = self.weights.as_chunks().0;
+        let mut sum = [T::default(); 4];
+        for (radiance, weights) in radiance.iter().zip(&table[rows.row[slot] as usize]) {
+            for (sum, weight) in sum.iter_mut().zip(weights) {
+                *sum = radiance.fused(*weight, *sum);
             }
-            let mut width = C / 2;
-            while width > 0 {
-                for c in 0..width {
-                    terms[c] = terms[c] + terms[c + width];
-                }
-                width /= 2;
-            }
-            *out = terms[0];
         }
-        out
+        let [x, y, z, _] = sum;
+        [x, y, z]
     }
 }

@@ -3,7 +3,7 @@
 use super::bounce::{Step, some_object};
 use super::intersect::{Leaving, NOTHING, Shadow, lane_vector, occluded};
 use super::model::Scatter;
-use super::pool::{Rows, WIDEST, any, array, bit_where, each, flags, has};
+use super::pool::{WIDEST, any, array, bit_where, each, flags, has};
 use super::replay::LightVertex;
 use super::surface::Surfaces;
 use crate::light::Towards;
@@ -167,11 +167,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let (albedos, emissions) = (self.table_rows(l, albedo), self.table_rows(l, lit.spectrum));
         let weights = array(l, lit.weight);
         let table = self.model.spectra.rows::<C>();
-        let Rows {
-            throughput,
-            radiance,
-            ..
-        } = &mut *self.rows;
+        let paths = self.rows.paths.as_mut_slice();
         for i in each(m.bits()) {
             let slot = self.slots[i % WIDEST] as usize;
             // Copies: arrays that cannot overlap become vectors.
@@ -179,14 +175,15 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
                 table[albedos[i % WIDEST] as usize],
                 table[emissions[i % WIDEST] as usize],
             );
-            let (carried, sum) = (&mut throughput[slot], &mut radiance[slot]);
-            let (mut own, mut total) = (*carried, *sum);
+            let path = &mut paths[slot];
+            let mut carried = *path;
             let weight = weights[i % WIDEST];
             for c in 0..C {
-                own[c] = own[c] * albedo[c];
-                total[c] = (own[c] * weight).fused(emission[c], total[c]);
+                let throughput = carried.throughput[c] * albedo[c];
+                carried.throughput[c] = throughput;
+                carried.radiance[c] = (throughput * weight).fused(emission[c], carried.radiance[c]);
             }
-            (*carried, *sum) = (own, total);
+            *path = carried;
         }
     }
 

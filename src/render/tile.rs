@@ -162,7 +162,7 @@ impl Tile {
                 let rows = &workspace.rows;
                 for (slot, xyz) in (slot..end).zip(values) {
                     if is_finite(xyz) {
-                        bins.add(pixel, &rows.radiance[slot], rows.row[slot]);
+                        bins.add(pixel, &rows.paths[slot].radiance, rows.row[slot]);
                     }
                 }
             }
