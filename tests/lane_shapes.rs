@@ -47,6 +47,7 @@ impl Job for Spans<'_> {
                 Some(case.placed.kind()),
                 case.placed.to_world(),
                 &case.placed.inverse(),
+                case.ray.origin.abs().max_element(),
             );
             let span = l.vectorize(
                 #[inline(always)]
@@ -56,7 +57,7 @@ impl Job for Spans<'_> {
                         Vec3::splat(l, case.ray.origin),
                         Vec3::splat(l, case.ray.direction),
                     );
-                    shape.span(l, &ray)
+                    shape.span(l, &ray, l.mask(true), l.real(f64::INFINITY))
                 },
             );
             let lane = |x| l.lane(x, 0).to_f64();

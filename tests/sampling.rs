@@ -78,13 +78,11 @@ impl Job for Ask<'_> {
                             [u, v, sample.wavelength, s, t]
                         }
                         What::Pair(slot, depth) => {
-                            let slot = slot.at(l, l.int(depth));
-                            let [u, v] = self.sequence.pair(l, id, slot);
+                            let [u, v] = self.sequence.pair(l, id, slot, l.int(depth));
                             [u, v, zero, zero, zero]
                         }
                         What::Single(slot, depth) => {
-                            let slot = slot.at(l, l.int(depth));
-                            let u = self.sequence.single(l, id, slot);
+                            let u = self.sequence.single(l, id, slot, l.int(depth));
                             [u, zero, zero, zero, zero]
                         }
                     };
@@ -714,7 +712,7 @@ fn standard_errors_are_honest() {
     for (k, numbers) in drawn.iter().enumerate() {
         let (pixel, i) = (k as u32 / spp, k as u32 % spp);
         let value = f64::from(u8::from(numbers[0] < p));
-        film.add(pixel as usize, i, [value, 2.0 * value, 1.0]);
+        film.add(pixel as usize, i..i + 1, &[[value, 2.0 * value, 1.0]]);
     }
     let estimates: Vec<_> = (0..pixels as usize)
         .map(|i| film.estimate(i, spp, |xyz| xyz))
@@ -736,7 +734,7 @@ fn standard_errors_are_honest() {
     assert!(t_test(&squares, naive) < level());
     // A single replicate has no standard error, and says so.
     let mut film = Pixels::new(1, Replicates::Fixed(1));
-    film.add(0, 0, [1.0; 3]);
+    film.add(0, 0..1, &[[1.0; 3]]);
     assert!(film.estimate(0, 1, |xyz| xyz).standard_error[0].is_nan());
 }
 

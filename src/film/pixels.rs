@@ -4,6 +4,9 @@
 //! standard errors and the picture's colours are formed from those sums alone, so they do not
 //! depend on how the work was shared out.
 
+use std::ops::Range;
+
+use crate::math::lanes::Scalar;
 use crate::sample::sequence::Replicates;
 use crate::spectrum::observer::XYZ_TO_LINEAR_SRGB;
 
@@ -22,6 +25,14 @@ pub struct Estimate {
     pub mean: [f64; 3],
     /// Standard error of each mean; NaN with a single replicate.
     pub standard_error: [f64; 3],
+}
+
+/// Whether all three are numbers. (The sum of f64 overflows only beyond what an f32 can hold or any
+/// radiance can be.)
+#[inline]
+pub fn is_finite<T: Scalar>(xyz: &[T; 3]) -> bool {
+    let [x, y, z] = xyz;
+    (x.to_f64() + y.to_f64() + z.to_f64()).is_finite()
 }
 
 /// XYZ to linear Rec. 709.
@@ -50,14 +61,22 @@ impl Pixels {
         replicates.count(samples) as usize * size_of::<[f64; 3]>()
     }
 
-    /// Adds sample `sample` of a pixel; a pixel's samples must come in order.
-    #[inline]
-    pub fn add(&mut self, pixel: usize, sample: u32, xyz: [f64; 3]) {
-        let (replicate, _) = self.replicates.place(sample);
-        let sum = &mut self.sums[pixel * self.slots + replicate as usize];
-        for (sum, value) in sum.iter_mut().zip(xyz) {
-            *sum += value;
+    /// Adds samples of a pixel, which must come in order, and leaves out those that are not numbers;
+    /// returns how many.
+    pub fn add<T: Scalar>(&mut self, pixel: usize, samples: Range<u32>, values: &[[T; 3]]) -> u64 {
+        let sums = &mut self.sums[pixel * self.slots..][..self.slots];
+        let mut rejected = 0;
+        for (sample, xyz) in samples.zip(values) {
+            if !is_finite(xyz) {
+                rejected += 1;
+                continue;
+            }
+            let (replicate, _) = self.replicates.place(sample);
+            for (sum, value) in sums[replicate as usize].iter_mut().zip(xyz) {
+                *sum += value.to_f64();
+            }
         }
+        rejected
     }
 
     /// Mean and standard error of a pixel after `samples` samples, channels mapped by `channels`.

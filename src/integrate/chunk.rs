@@ -17,7 +17,15 @@ pub const POOL: usize = 512;
 /// Most samples of a chunk.
 pub const CHUNK: usize = 4096;
 /// 0, 1, 2 …
-const LANE_NUMBERS: [u32; WIDEST] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+const LANE_NUMBERS: [u32; WIDEST] = {
+    let mut numbers = [0; WIDEST];
+    let mut i = 0;
+    while i < WIDEST {
+        numbers[i] = i as u32;
+        i += 1;
+    }
+    numbers
+};
 
 /// One camera sample to take: pixel and index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

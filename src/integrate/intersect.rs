@@ -78,34 +78,33 @@ fn candidate<L: Lanes>(
     inward: L::Mask,
 ) -> Candidate<L> {
     let zero = l.real(0.0);
-    let Span { near, far, .. } = span;
-    if flat {
-        let possible = !(span.miss | own | near.high.lt(zero));
-        return Candidate {
-            at: Enclosure {
-                // The larger of NaN and 0 is 0: what is not known could be anywhere.
-                low: near.low.max(zero),
-                high: near.high,
-            },
-            certain: span.hit & near.low.gt(zero) & possible,
-            possible,
-            part: span.parts[0],
-        };
+    let Span {
+        mut near, far, hit, ..
+    } = *span;
+    let mut excluded = span.miss | own;
+    if !flat {
+        let inside = own & inward;
+        if inside.any() {
+            // The entering crossing is the start.
+            let behind = l.real(f64::NEG_INFINITY);
+            near.low = l.select(inside, behind, near.low);
+            near.high = l.select(inside, behind, near.high);
+            excluded = span.miss | (own & !inside);
+        }
     }
-    let own_inward = own & inward;
-    let possible = !(span.miss | far.high.lt(zero) | (own & !inward));
-    let enters = near.low.gt(zero) & !own_inward;
-    let leaves = (near.high.lt(zero) | own_inward) & far.low.gt(zero);
-    let certain = span.hit & (enters | leaves) & possible;
-    let low = l.select(enters, near.low, l.select(certain, far.low, near.low));
+    let leaves = near.high.lt(zero);
+    let low = l.select(leaves, far.low, near.low);
+    let high = l.select(leaves, far.high, near.high);
+    let possible = !(excluded | high.lt(zero));
     Candidate {
         at: Enclosure {
+            // The larger of NaN and 0 is 0: what is not known could be anywhere.
             low: low.max(zero),
-            high: l.select(enters, near.high, far.high),
+            high,
         },
-        certain,
+        certain: hit & possible & low.gt(zero),
         possible,
-        part: l.select_int(enters, span.parts[0], span.parts[1]),
+        part: l.select_int(leaves, span.parts[1], span.parts[0]),
     }
 }
 
@@ -151,8 +150,7 @@ impl<L: Lanes> Search<L> {
         }
     }
 
-    /// Asks one object, for the lanes in `asked`; where that is `None`, for all of them, and what
-    /// is found for lanes without a ray means nothing.
+    /// Asks one object, for the lanes in `asked`.
     #[inline(always)]
     fn ask(
         &mut self,
@@ -161,21 +159,18 @@ impl<L: Lanes> Search<L> {
         k: u32,
         ray: &LaneRay<L>,
         leaving: &Leaving<L>,
-        asked: Option<L::Mask>,
+        asked: L::Mask,
     ) {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
         let index = l.int(k);
-        let span = shape.span(l, ray);
-        let own = leaving.object.same(index);
-        let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
-        let mut possible = c.possible;
-        if let Some(asked) = asked {
-            possible = possible & asked;
-        }
-        if !possible.any() {
+        let span = shape.span(l, ray, asked, self.best.high);
+        if !(asked & !span.miss).any() {
             return;
         }
+        let own = leaving.object.same(index);
+        let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
+        let possible = c.possible & asked;
         let take = c.certain & possible & c.at.high.lt(self.best.high);
         // Of this crossing and the best so far, the one that is not taken remains a rival.
         let loser = l.select(take, self.best.low, c.at.low);
@@ -199,40 +194,45 @@ impl<L: Lanes> Search<L> {
     ) {
         l.vectorize(
             #[inline(always)]
-            || self.ask(l, model, k, ray, leaving, Some(asked)),
+            || self.ask(l, model, k, ray, leaving, asked),
         );
     }
 
     /// Asks the objects whose boxes the rays meet, nearest boxes first, a round of one object a
     /// ray at a time.
-    #[inline(always)]
-    fn ask_many(
-        &mut self,
+    #[inline(never)]
+    fn of_many(
         l: L,
         model: &Model<L::Scalar>,
         many: &Many<L::Scalar>,
         ray: &LaneRay<L>,
         leaving: &Leaving<L>,
         active: L::Mask,
-    ) {
-        for &k in &many.unbounded {
-            self.ask_alone(l, model, k, ray, leaving, active);
-        }
-        let mut rays = Rounds::new(l, ray, active);
-        loop {
-            let limits = array(l, self.best.high);
-            let (mut pending, objects) = rays.next(many, active.bits(), &limits);
-            if pending == 0 {
-                return;
-            }
-            let objects = l.load_int(&objects);
-            while pending != 0 {
-                let k = l.int_lane(objects, pending.trailing_zeros() as usize);
-                let here = l.mask_from_bits(pending) & objects.same(l.int(k));
-                pending &= !here.bits();
-                self.ask_alone(l, model, k, ray, leaving, here);
-            }
-        }
+    ) -> Self {
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let mut search = Self::new(l);
+                for &k in &many.unbounded {
+                    search.ask_alone(l, model, k, ray, leaving, active);
+                }
+                let mut rays = Rounds::new(l, ray, active);
+                loop {
+                    let limits = array(l, search.best.high);
+                    let (mut pending, objects) = rays.next(many, active.bits(), &limits);
+                    if pending == 0 {
+                        return search;
+                    }
+                    let objects = l.load_int(&objects);
+                    while pending != 0 {
+                        let k = l.int_lane(objects, pending.trailing_zeros() as usize);
+                        let here = l.mask_from_bits(pending) & objects.same(l.int(k));
+                        pending &= !here.bits();
+                        search.ask_alone(l, model, k, ray, leaving, here);
+                    }
+                }
+            },
+        )
     }
 }
 
@@ -311,15 +311,16 @@ pub fn nearest<L: Lanes>(
     l.vectorize(
         #[inline(always)]
         || {
-            let mut search = Search::new(l);
-            match &model.hierarchy {
+            let search = match &model.hierarchy {
                 None => {
+                    let mut search = Search::new(l);
                     for k in 0..model.shapes.len() as u32 {
-                        search.ask(l, model, k, ray, leaving, None);
+                        search.ask(l, model, k, ray, leaving, active);
                     }
+                    search
                 }
-                Some(many) => search.ask_many(l, model, many, ray, leaving, active),
-            }
+                Some(many) => Search::of_many(l, model, many, ray, leaving, active),
+            };
             let high = search.best.high;
             let mut best = Nearest {
                 t: (search.best.low + high) * l.real(0.5),
@@ -380,7 +381,15 @@ struct Blocks<L: Lanes> {
 }
 
 impl<L: Lanes> Blocks<L> {
-    /// Asks one object, for the lanes in `asked`; for all of them where that is `None`.
+    #[inline(always)]
+    fn new(l: L) -> Self {
+        Self {
+            blocked: l.mask(false),
+            doubtful: l.mask(false),
+        }
+    }
+
+    /// Asks one object, for the lanes in `asked`.
     #[inline(always)]
     fn ask(
         &mut self,
@@ -389,21 +398,18 @@ impl<L: Lanes> Blocks<L> {
         k: u32,
         shadow: &Shadow<L>,
         leaving: &Leaving<L>,
-        asked: Option<L::Mask>,
+        asked: L::Mask,
     ) {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
         let index = l.int(k);
-        let span = shape.span(l, &shadow.ray);
-        let own = leaving.object.same(index);
-        let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
-        let mut counted = !shadow.except.same(index) & c.possible;
-        if let Some(asked) = asked {
-            counted = counted & asked;
-        }
-        if !counted.any() {
+        let span = shape.span(l, &shadow.ray, asked, shadow.limit);
+        if !(asked & !span.miss).any() {
             return;
         }
+        let own = leaving.object.same(index);
+        let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
+        let counted = c.possible & asked & !shadow.except.same(index);
         self.blocked = self.blocked | (c.certain & c.at.high.lt(shadow.limit) & counted);
         self.doubtful = self.doubtful | (c.at.low.lt(shadow.limit) & counted);
     }
@@ -421,40 +427,45 @@ impl<L: Lanes> Blocks<L> {
     ) {
         l.vectorize(
             #[inline(always)]
-            || self.ask(l, model, k, shadow, leaving, Some(asked)),
+            || self.ask(l, model, k, shadow, leaving, asked),
         );
     }
 
     /// Asks the objects whose boxes the rays meet, until each ray is blocked or through.
-    #[inline(always)]
-    fn ask_many(
-        &mut self,
+    #[inline(never)]
+    fn of_many(
         l: L,
         model: &Model<L::Scalar>,
         many: &Many<L::Scalar>,
         shadow: &Shadow<L>,
         leaving: &Leaving<L>,
         active: L::Mask,
-    ) {
-        for &k in many.unbounded.iter().filter(|k| model.hides(**k)) {
-            self.ask_alone(l, model, k, shadow, leaving, active);
-        }
-        let mut rays = Rounds::new(l, &shadow.ray, active);
-        let limits = array(l, shadow.limit);
-        loop {
-            let open = active & !self.blocked;
-            let (mut pending, objects) = rays.next(many, open.bits(), &limits);
-            if pending == 0 {
-                return;
-            }
-            let objects = l.load_int(&objects);
-            while pending != 0 {
-                let k = l.int_lane(objects, pending.trailing_zeros() as usize);
-                let here = l.mask_from_bits(pending) & objects.same(l.int(k));
-                pending &= !here.bits();
-                self.ask_alone(l, model, k, shadow, leaving, here);
-            }
-        }
+    ) -> Self {
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let mut blocks = Self::new(l);
+                for &k in many.unbounded.iter().filter(|k| model.hides(**k)) {
+                    blocks.ask_alone(l, model, k, shadow, leaving, active);
+                }
+                let mut rays = Rounds::new(l, &shadow.ray, active);
+                let limits = array(l, shadow.limit);
+                loop {
+                    let open = active & !blocks.blocked;
+                    let (mut pending, objects) = rays.next(many, open.bits(), &limits);
+                    if pending == 0 {
+                        return blocks;
+                    }
+                    let objects = l.load_int(&objects);
+                    while pending != 0 {
+                        let k = l.int_lane(objects, pending.trailing_zeros() as usize);
+                        let here = l.mask_from_bits(pending) & objects.same(l.int(k));
+                        pending &= !here.bits();
+                        blocks.ask_alone(l, model, k, shadow, leaving, here);
+                    }
+                }
+            },
+        )
     }
 }
 
@@ -474,19 +485,16 @@ pub fn occluded<L: Lanes>(
     l.vectorize(
         #[inline(always)]
         || {
-            let nobody = l.mask(false);
-            let mut blocks = Blocks::<L> {
-                blocked: nobody,
-                doubtful: nobody,
-            };
-            match &model.hierarchy {
+            let blocks = match &model.hierarchy {
                 None => {
+                    let mut blocks = Blocks::new(l);
                     for &k in &model.occluders {
-                        blocks.ask(l, model, k, shadow, leaving, None);
+                        blocks.ask(l, model, k, shadow, leaving, active);
                     }
+                    blocks
                 }
-                Some(many) => blocks.ask_many(l, model, many, shadow, leaving, active),
-            }
+                Some(many) => Blocks::of_many(l, model, many, shadow, leaving, active),
+            };
             let Blocks {
                 mut blocked,
                 doubtful,

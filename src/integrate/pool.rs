@@ -189,12 +189,12 @@ impl<T: Copy + Default> Pool<T> {
             if to != from || kept != L::COUNT {
                 let keep = l.mask_from_bits(bits);
                 for field in self.reals.chunks_exact_mut(self.capacity) {
-                    let x = l.compress(l.load(&field[from..]), keep);
-                    l.store(x, &mut field[to..]);
+                    let x = l.load(&field[from..]);
+                    l.compress_into(x, keep, &mut field[to..]);
                 }
                 for field in self.ints.chunks_exact_mut(self.capacity) {
-                    let x = l.compress_int(l.load_int(&field[from..]), keep);
-                    l.store_int(x, &mut field[to..]);
+                    let x = l.load_int(&field[from..]);
+                    l.compress_int_into(x, keep, &mut field[to..]);
                 }
             }
             to += kept;

@@ -15,7 +15,7 @@ use fearless_simd::{
 };
 
 /// Most lanes of a packet.
-pub const WIDEST: usize = 16;
+pub const WIDEST: usize = 32;
 
 /// The scalar stored in one lane, as arrays keep it.
 pub trait Scalar:
@@ -97,6 +97,8 @@ impl Scalar for f64 {
 pub trait Mask:
     Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> + 'static
 {
+    /// Number of lanes.
+    const COUNT: u32;
     /// Whether any lane is true.
     fn any(self) -> bool;
     /// Lane `i` in bit `i`.
@@ -227,10 +229,11 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn to_real(self, x: Self::Int) -> Self::Real;
     /// Splits positive normal x = m · 2ᵉ with m in [1, 2): (m, e).
     fn split_exponent(self, x: Self::Real) -> (Self::Real, Self::Real);
-    /// The true lanes moved to the front, in order; the rest is unspecified.
-    fn compress(self, x: Self::Real, keep: Self::Mask) -> Self::Real;
-    /// The true lanes moved to the front, in order; the rest is unspecified.
-    fn compress_int(self, x: Self::Int, keep: Self::Mask) -> Self::Int;
+    /// Stores the true lanes, in order, into the first of `COUNT` places; what the other places
+    /// get is unspecified.
+    fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [Self::Scalar]);
+    /// The same of integers.
+    fn compress_int_into(self, x: Self::Int, keep: Self::Mask, to: &mut [u32]);
 
     /// Uniform variate in [0, 1) from 32 random bits, rounded *down* so that 1 cannot occur.
     #[inline(always)]
@@ -256,8 +259,9 @@ pub struct Single<S: Simd>(pub S);
 pub struct Double<S: Simd>(pub S);
 
 macro_rules! mask_impl {
-    ($mask:ident) => {
+    ($mask:ident, $count:literal) => {
         impl<S: Simd> Mask for $mask<S> {
+            const COUNT: u32 = $count;
             #[inline(always)]
             fn any(self) -> bool {
                 self.any_true()
@@ -270,8 +274,8 @@ macro_rules! mask_impl {
     };
 }
 
-mask_impl!(mask32x16);
-mask_impl!(mask64x8);
+mask_impl!(mask32x16, 16);
+mask_impl!(mask64x8, 8);
 
 /// Whether an instruction set has a fused multiply-add; known at compile time once inlined.
 #[inline(always)]
@@ -584,12 +588,12 @@ impl<S: Simd> Lanes for Single<S> {
         (mantissa.bitcast(), exponent)
     }
     #[inline(always)]
-    fn compress(self, x: Self::Real, keep: Self::Mask) -> Self::Real {
-        x.compress(keep)
+    fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [Self::Scalar]) {
+        self.store(x.compress(keep), to);
     }
     #[inline(always)]
-    fn compress_int(self, x: Self::Int, keep: Self::Mask) -> Self::Int {
-        x.compress(keep)
+    fn compress_int_into(self, x: Self::Int, keep: Self::Mask, to: &mut [u32]) {
+        self.store_int(x.compress(keep), to);
     }
 }
 
@@ -719,11 +723,11 @@ impl<S: Simd> Lanes for Double<S> {
         (mantissa.bitcast(), exponent)
     }
     #[inline(always)]
-    fn compress(self, x: Self::Real, keep: Self::Mask) -> Self::Real {
-        x.compress(keep)
+    fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [Self::Scalar]) {
+        self.store(x.compress(keep), to);
     }
     #[inline(always)]
-    fn compress_int(self, x: Self::Int, keep: Self::Mask) -> Self::Int {
-        x.compress(keep)
+    fn compress_int_into(self, x: Self::Int, keep: Self::Mask, to: &mut [u32]) {
+        self.store_int(x.compress(keep), to);
     }
 }

@@ -7,4 +7,5 @@ pub mod functions;
 pub mod lanes;
 pub mod lookup;
 pub mod number;
+pub mod twice;
 pub mod vec3;

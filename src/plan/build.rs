@@ -16,7 +16,7 @@ use crate::light::{
 use crate::math::affine::Affine;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Sequence;
-use crate::scene::{Emission, Light, Object, Scene, Shape, Sides, Surface};
+use crate::scene::{Emission, Light, Named, Object, Scene, Shape, Sides, Surface};
 use crate::shape::hierarchy::{Bounds, Hierarchy};
 use crate::shape::lanes::LaneShape;
 use crate::shape::lanes::implicit::LaneImplicit;
@@ -39,7 +39,7 @@ pub fn build<T: Scalar>(
     scene: &Scene,
     choices: &Choices,
 ) -> Result<(Model<T>, Spectrometer<T>), PlanError> {
-    let mut builder = Builder::<T>::new(choices.wavelengths as usize);
+    let mut builder = Builder::<T>::new(choices.wavelengths as usize, scene);
     for (index, object) in scene.objects.iter().enumerate() {
         let placed = builder
             .place(scene, index)
@@ -115,8 +115,12 @@ struct Builder<T> {
 }
 
 impl<T: Scalar> Builder<T> {
-    fn new(wavelengths: usize) -> Self {
+    fn new(wavelengths: usize, scene: &Scene) -> Self {
         let cumulative = Cumulative;
+        let placed = |o: &Named<Object>| {
+            super::extent::bounds(&o.value.shape, &about_camera(scene, &o.value))
+        };
+        let bounds = scene.objects.iter().filter_map(placed);
         Self {
             bank: SpectrumBank::new(wavelengths),
             edges: (0..=CELLS).map(|cell| cumulative.edge(cell)).collect(),
@@ -129,7 +133,7 @@ impl<T: Scalar> Builder<T> {
             resolver: Resolver::default(),
             bounded: Vec::new(),
             unbounded: Vec::new(),
-            reach: 0.0,
+            reach: bounds.map(|b| super::extent::reach(&b)).fold(0.0, f64::max),
         }
     }
 
@@ -174,7 +178,8 @@ impl<T: Scalar> Builder<T> {
         if !inverse.rows.iter().flatten().all(|x| x.is_finite()) {
             return None;
         }
-        self.shapes.push(LaneShape::new(kind, &to_world, &inverse));
+        self.shapes
+            .push(LaneShape::new(kind, &to_world, &inverse, self.reach));
         match &object.shape {
             Shape::Implicit(implicit) => {
                 let lanes = LaneImplicit::new(implicit, &inverse);
@@ -187,7 +192,6 @@ impl<T: Scalar> Builder<T> {
             }
         }
         if let Some(bounds) = super::extent::bounds(&object.shape, &to_world) {
-            self.reach = self.reach.max(super::extent::reach(&bounds));
             if kind.is_some() {
                 self.bounded.push((index as u32, bounds));
             }

@@ -6,6 +6,7 @@ use crate::integrate::chunk::{self, Workspace};
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::model::Model;
 use crate::math::lanes::{Double, Scalar, Single};
+use crate::math::twice::Twice;
 
 /// The instruction sets that a compiled copy of the loop exists for.
 #[derive(Debug, Clone, Copy)]
@@ -94,7 +95,14 @@ macro_rules! runs {
                 }
                 match level {
                     #[cfg(target_arch = "x86_64")]
-                    Instructions::Avx512(simd) => on!(simd),
+                    // Enough registers for two packets, and more wanted than one to be kept busy.
+                    Instructions::Avx512(simd) => chunk::render(
+                        Twice($lanes(simd)),
+                        model,
+                        spectrometer,
+                        requests,
+                        workspace,
+                    ),
                     #[cfg(target_arch = "x86_64")]
                     Instructions::Avx2(simd) => on!(simd),
                     #[cfg(target_arch = "x86_64")]

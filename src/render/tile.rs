@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::bins::Bins;
 use super::dispatch::{Instructions, Runs};
-use crate::film::pixels::Pixels;
+use crate::film::pixels::{Pixels, is_finite};
 use crate::integrate::chunk::{self, CHUNK, Workspace};
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::intersect::Rungs;
@@ -150,22 +150,34 @@ impl Tile {
         let mut slot = 0;
         for run in runs {
             let pixel = run.pixel as usize;
-            for sample in run.samples.clone() {
-                let xyz = workspace.tristimulus[slot].map(Scalar::to_f64);
-                if xyz.iter().all(|v| v.is_finite()) {
-                    self.pixels.add(pixel, sample, xyz);
-                    if let Some(bins) = &mut self.bins {
-                        let rows = &workspace.rows;
+            let samples = run.samples.clone();
+            let end = slot + samples.len();
+            let values = &workspace.tristimulus[slot..end];
+            let rejected = self.pixels.add(pixel, samples, values);
+            if rejected > 0 {
+                self.report(run, values);
+                self.not_a_number += rejected;
+            }
+            if let Some(bins) = &mut self.bins {
+                let rows = &workspace.rows;
+                for (slot, xyz) in (slot..end).zip(values) {
+                    if is_finite(xyz) {
                         bins.add(pixel, &rows.radiance[slot], rows.row[slot]);
                     }
-                } else {
-                    self.not_a_number += 1;
-                    let (x, y) = self.place(run.pixel);
-                    let request = chunk::Request { x, y, sample };
-                    self.first_not_a_number.get_or_insert(request);
                 }
-                slot += 1;
             }
+            slot = end;
+        }
+    }
+
+    /// Notes the first sample that is not a number.
+    #[cold]
+    fn report<T: Scalar>(&mut self, run: &Run, values: &[[T; 3]]) {
+        let first = run.samples.clone().zip(values);
+        if let Some((sample, _)) = first.into_iter().find(|(_, xyz)| !is_finite(xyz)) {
+            let (x, y) = self.place(run.pixel);
+            let request = chunk::Request { x, y, sample };
+            self.first_not_a_number.get_or_insert(request);
         }
     }
 }

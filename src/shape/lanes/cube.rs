@@ -1,36 +1,81 @@
 //! The cube [-1, 1]³ in lanes.
 
-use super::{Enclosure, LaneRay, LaneShape, Span, reach, slab};
-use crate::math::lanes::{Lanes, Real, inlined};
+use super::{Along, Enclosure, LaneRay, LaneShape, Slab, Span, reach, slab};
+use crate::math::lanes::{Lanes, Mask, Real, inlined};
 use crate::math::vec3::Vec3;
 
 /// Three slabs (Kay and Kajiya 1986), each crossing with its bound; the cube is hit for certain
 /// when the latest possible entry is before the earliest possible exit.
 #[inline(always)]
-pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
-    let row = inlined(
-        #[inline(always)]
-        |i: usize| shape.inverse.row(l, i, ray.origin, ray.direction),
-    );
-    let ((ox, dx), (oy, dy), (oz, dz)) = (row(0), row(1), row(2));
-    let (o, d) = (Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
+pub fn span<L: Lanes>(
+    l: L,
+    shape: &LaneShape<L::Scalar>,
+    ray: &LaneRay<L>,
+    asked: L::Mask,
+) -> Span<L> {
+    let slabs = slabs(l, shape, ray);
+    let [x, y, z] = &slabs;
+    if (asked & (x.parallel | y.parallel | z.parallel)).any() {
+        return with_parallels(l, shape, ray);
+    }
+    let nowhere = l.mask(false);
+    joined(l, &slabs, nowhere, nowhere)
+}
+
+/// The three slabs of the lines in local coordinates.
+#[inline(always)]
+fn slabs<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> [Slab<L>; 3] {
     let axis = inlined(
         #[inline(always)]
-        |i, o_i, d_i| {
-            let e = shape.origin_error(l, ray, i);
-            let dd = l.splat(shape.direction_error[i]);
-            slab(
-                l,
-                o_i,
-                d_i,
-                e,
-                dd,
-                #[inline(always)]
-                || reach(l, shape, ray, o, d),
-            )
+        |i| {
+            let (o, d) = shape.inverse.row(l, i, ray.origin, ray.direction);
+            let (e, dd) = bounds(l, shape, ray, i);
+            slab(l, o, d, e, dd)
         },
     );
-    let (x, y, z) = (axis(0, o.x, d.x), axis(1, o.y, d.y), axis(2, o.z, d.z));
+    [axis(0), axis(1), axis(2)]
+}
+
+/// Bounds of the errors of local origin and direction.
+#[inline(always)]
+fn bounds<L: Lanes>(
+    l: L,
+    shape: &LaneShape<L::Scalar>,
+    ray: &LaneRay<L>,
+    i: usize,
+) -> (L::Real, L::Real) {
+    (
+        shape.origin_error(l, ray, i),
+        l.splat(shape.direction_error[i]),
+    )
+}
+
+/// The same where some line may run along a slab.
+#[cold]
+#[inline(never)]
+fn with_parallels<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
+    l.vectorize(
+        #[inline(always)]
+        || {
+            let mut slabs = slabs(l, shape, ray);
+            let o = shape.inverse.point(l, ray.origin);
+            let d = shape.inverse.vector(l, ray.direction);
+            let reach = reach(l, shape, ray, o, d);
+            let (mut lost, mut outside) = (l.mask(false), l.mask(false));
+            let components = [(o.x, d.x), (o.y, d.y), (o.z, d.z)];
+            for (i, (slab, (o, d))) in slabs.iter_mut().zip(components).enumerate() {
+                let (e, dd) = bounds(l, shape, ray, i);
+                let along: Along<L> = slab.settle(l, o, d, e, dd, reach);
+                lost = lost | along.lost;
+                outside = outside | along.outside;
+            }
+            joined(l, &slabs, lost, outside)
+        },
+    )
+}
+
+#[inline(always)]
+fn joined<L: Lanes>(l: L, [x, y, z]: &[Slab<L>; 3], lost: L::Mask, outside: L::Mask) -> Span<L> {
     let near = Enclosure {
         low: x.near.low.max(y.near.low).max(z.near.low),
         high: x.near.high.max(y.near.high).max(z.near.high),
@@ -57,8 +102,6 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
             z.far.low.lt(x.far.low.min(y.far.low)),
         ),
     ];
-    let lost = x.lost | y.lost | z.lost;
-    let outside = x.outside | y.outside | z.outside;
     Span {
         near,
         far,

@@ -1,13 +1,18 @@
 //! The capped cylinder x² + y² ≤ 1, |z| ≤ 1 in lanes.
 
-use super::{Enclosure, LaneRay, LaneShape, LaneSurface, Span, reach, slab};
+use super::{Along, Enclosure, LaneRay, LaneShape, LaneSurface, Span, reach, slab};
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
 use crate::math::vec3::Vec3;
 
 /// The side as a circle about the foot of the perpendicular in the plane (bounds as for the
 /// sphere, with √2 in place of √3), the caps as a slab.
 #[inline(always)]
-pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
+pub fn span<L: Lanes>(
+    l: L,
+    shape: &LaneShape<L::Scalar>,
+    ray: &LaneRay<L>,
+    asked: L::Mask,
+) -> Span<L> {
     let u = <L::Scalar as Scalar>::ROUNDOFF;
     let one = l.real(1.0);
     let row = inlined(
@@ -40,7 +45,7 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     let mut side_miss = c.lt(-c_error);
     // Along the axis the relative error of the direction across it is unbounded.
     let parallel = !across.sqrt().gt(dd * l.real(8.0));
-    if parallel.any() {
+    if (parallel & asked).any() {
         let drift = (across.sqrt() + dd * l.real(2.0))
             .mul_add(reach(l, shape, ray, o, d), e0 * l.real(2.0))
             * l.real(1.0 + 1e-6);
@@ -60,15 +65,19 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
         side_miss = (side_miss & !parallel) | (parallel & outside);
     }
 
-    let caps = slab(
-        l,
-        o.z,
-        d.z,
+    let (e, dd) = (
         shape.origin_error(l, ray, 2),
         l.splat(shape.direction_error[2]),
-        #[inline(always)]
-        || reach(l, shape, ray, o, d),
     );
+    let mut caps = slab(l, o.z, d.z, e, dd);
+    let nowhere = l.mask(false);
+    let mut along = Along::<L> {
+        lost: nowhere,
+        outside: nowhere,
+    };
+    if (caps.parallel & asked).any() {
+        along = caps.settle(l, o.z, d.z, e, dd, reach(l, shape, ray, o, d));
+    }
     let near = Enclosure {
         low: side_near.low.max(caps.near.low),
         high: side_near.high.max(caps.near.high),
@@ -80,8 +89,8 @@ pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> S
     Span {
         near,
         far,
-        hit: side_hit & near.high.lt(far.low) & !caps.lost & !caps.outside,
-        miss: side_miss | caps.outside | (side_hit & near.low.gt(far.high) & !caps.lost),
+        hit: side_hit & near.high.lt(far.low) & !along.lost & !along.outside,
+        miss: side_miss | along.outside | (side_hit & near.low.gt(far.high) & !along.lost),
         parts: [l.int(0); 2],
     }
 }

@@ -13,7 +13,7 @@ mod flat;
 mod sphere;
 
 use crate::math::affine::Affine;
-use crate::math::lanes::{Lanes, Mask, Real, Scalar};
+use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::vec3::{Rows, Vec3};
 use crate::shape::ShapeKind;
 
@@ -76,7 +76,7 @@ pub struct Span<L: Lanes> {
     pub far: Enclosure<L>,
     /// The line certainly meets the shape.
     pub hit: L::Mask,
-    /// The line certainly misses it, or meets it only behind the origin.
+    /// The line certainly misses it, or meets it only behind the origin or beyond the limit.
     pub miss: L::Mask,
     /// Which of the shape's parts it enters and leaves by, if it meets it.
     pub parts: [L::Int; 2],
@@ -104,8 +104,9 @@ pub struct LaneShape<T> {
 }
 
 impl<T: Scalar> LaneShape<T> {
-    /// Rounds a placement whose inverse is given.
-    pub fn new(kind: Option<ShapeKind>, forward: &Affine, inverse: &Affine) -> Self {
+    /// Rounds a placement whose inverse is given; `reach` is the largest magnitude of a coordinate
+    /// among the points that rays usually start from.
+    pub fn new(kind: Option<ShapeKind>, forward: &Affine, inverse: &Affine, reach: f64) -> Self {
         // One more half unit roundoff in the bounds pays for rounding the bounds themselves.
         let unit = 6.5 * T::ROUNDOFF;
         Self {
@@ -118,7 +119,7 @@ impl<T: Scalar> LaneShape<T> {
                 .map(|r| T::from_f64(unit * (r[0].abs() + r[1].abs() + r[2].abs()))),
             offset_error: inverse.rows.map(|r| T::from_f64(unit * (r[3].abs() + 1.0))),
             margins: flat::margins::<T>(inverse).map(T::from_f64),
-            ball: sphere::Ball::new(forward),
+            ball: sphere::Ball::new(forward, reach),
         }
     }
 
@@ -149,13 +150,20 @@ impl<T: Scalar> LaneShape<T> {
         (ray.extent.mul_add(direction, l.splat(offset)), direction)
     }
 
-    /// Where the lines meet the shape.
+    /// Where the lines of the lanes in `asked` meet the shape; what is said of others means nothing.
+    /// A shape that lies beyond `limit` as a whole may be called missed.
     #[inline(always)]
-    pub fn span<L: Lanes<Scalar = T>>(&self, l: L, ray: &LaneRay<L>) -> Span<L> {
+    pub fn span<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        ray: &LaneRay<L>,
+        asked: L::Mask,
+        limit: L::Real,
+    ) -> Span<L> {
         match self.kind {
-            Some(ShapeKind::Sphere) => sphere::span(l, self, ray),
-            Some(ShapeKind::Cube) => cube::span(l, self, ray),
-            Some(ShapeKind::Cylinder) => cylinder::span(l, self, ray),
+            Some(ShapeKind::Sphere) => sphere::span(l, self, ray, asked, limit),
+            Some(ShapeKind::Cube) => cube::span(l, self, ray, asked),
+            Some(ShapeKind::Cylinder) => cylinder::span(l, self, ray, asked),
             Some(ShapeKind::Disk) => flat::span::<L, flat::Disk>(l, self, ray),
             Some(ShapeKind::Rectangle) => flat::span::<L, flat::Rectangle>(l, self, ray),
             Some(ShapeKind::Plane) => flat::span::<L, flat::Plane>(l, self, ray),
@@ -231,23 +239,13 @@ impl<T: Scalar> Planes<T> {
 struct Slab<L: Lanes> {
     near: Enclosure<L>,
     far: Enclosure<L>,
-    /// Lanes for which even the bounds mean nothing.
-    lost: L::Mask,
-    /// The line runs outside of the slab.
-    outside: L::Mask,
+    /// Lanes that may run along the slab, for which the bounds mean nothing.
+    parallel: L::Mask,
 }
 
-/// Intersects the slab |o + t d| ≤ 1, where o is within `e` and d within `dd` of the exact values
-/// and |t| ≤ `reach` for whatever else the line could hit.
+/// Intersects the slab |o + t d| ≤ 1, where o is within `e` and d within `dd` of the exact values.
 #[inline(always)]
-fn slab<L: Lanes>(
-    l: L,
-    o: L::Real,
-    d: L::Real,
-    e: L::Real,
-    dd: L::Real,
-    reach: impl Fn() -> L::Real,
-) -> Slab<L> {
+fn slab<L: Lanes>(l: L, o: L::Real, d: L::Real, e: L::Real, dd: L::Real) -> Slab<L> {
     let one = l.real(1.0);
     let inverse = one / d;
     let t1 = (-one - o) * inverse;
@@ -259,29 +257,50 @@ fn slab<L: Lanes>(
         l.real(2.0),
         largest * l.real(5.0 * <L::Scalar as Scalar>::ROUNDOFF),
     );
-    let mut slab = Slab {
+    Slab {
         near: Enclosure::about(t1.min(t2), error),
         far: Enclosure::about(t1.max(t2), error),
-        lost: l.mask(false),
-        outside: l.mask(false),
-    };
-    let parallel = !d.abs().gt(dd * l.real(4.0));
-    if parallel.any() {
-        // Along the slab: decided by position, for all t within reach.
-        let drift = (d.abs() + dd).mul_add(reach(), e) * l.real(1.0 + 1e-6);
-        let inside = parallel & (o.abs() + drift).lt(one);
-        let outside = parallel & (o.abs() - drift).gt(one);
-        let far = l.real(f64::INFINITY);
-        for end in [&mut slab.near.low, &mut slab.near.high] {
-            *end = l.select(parallel, -far, *end);
-        }
-        for end in [&mut slab.far.low, &mut slab.far.high] {
-            *end = l.select(parallel, far, *end);
-        }
-        slab.lost = parallel & !inside & !outside;
-        slab.outside = outside;
+        parallel: !d.abs().gt(dd * l.real(4.0)),
     }
-    slab
+}
+
+/// What position says of lines along a slab.
+struct Along<L: Lanes> {
+    /// Lanes for which it says nothing either.
+    lost: L::Mask,
+    /// The line runs outside of the slab.
+    outside: L::Mask,
+}
+
+impl<L: Lanes> Slab<L> {
+    /// Decides the parallel lanes by position, for all |t| ≤ `reach`, within which the line could hit
+    /// anything else of the shape; inside, the slab is no limit to them.
+    #[inline(always)]
+    fn settle(
+        &mut self,
+        l: L,
+        o: L::Real,
+        d: L::Real,
+        e: L::Real,
+        dd: L::Real,
+        reach: L::Real,
+    ) -> Along<L> {
+        let one = l.real(1.0);
+        let drift = (d.abs() + dd).mul_add(reach, e) * l.real(1.0 + 1e-6);
+        let inside = self.parallel & (o.abs() + drift).lt(one);
+        let outside = self.parallel & (o.abs() - drift).gt(one);
+        let far = l.real(f64::INFINITY);
+        for end in [&mut self.near.low, &mut self.near.high] {
+            *end = l.select(self.parallel, -far, *end);
+        }
+        for end in [&mut self.far.low, &mut self.far.high] {
+            *end = l.select(self.parallel, far, *end);
+        }
+        Along {
+            lost: self.parallel & !inside & !outside,
+            outside,
+        }
+    }
 }
 
 /// Farthest |t| at which the line can be inside the canonical box: (|o|₁ + E + 1)/max(|dᵢ| − Dᵢ),

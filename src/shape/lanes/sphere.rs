@@ -17,11 +17,18 @@ pub struct Ball<T> {
     offset_error: T,
     /// 8/r.
     curvature: T,
+    /// Largest max|o| for which the two bounds below hold.
+    reach: T,
+    /// Squared distance from the centre beyond which a line surely passes.
+    clear_squared: T,
+    /// Distance along the ray from its foot beyond which it is surely not near.
+    clear: T,
 }
 
 impl<T: Scalar> Ball<T> {
-    /// The ball that the map makes of the unit sphere, if it does.
-    pub fn new(forward: &Affine) -> Option<Self> {
+    /// The ball that the map makes of the unit sphere, if it does; `reach` is the largest magnitude of
+    /// a coordinate among the points that rays usually start from.
+    pub fn new(forward: &Affine, reach: f64) -> Option<Self> {
         let [x, y, z] = &forward.rows;
         let radius = x[0].abs();
         let straight = [x[1], x[2], y[0], y[2], z[0], z[1]]
@@ -31,11 +38,25 @@ impl<T: Scalar> Ball<T> {
             return None;
         }
         let largest = x[3].abs().max(y[3].abs()).max(z[3].abs());
+        let unit = 6.5 * T::ROUNDOFF;
+        // The largest e of `ball_span`, with |t₀| ≤ |o − c|, and twice that for its evaluation.
+        let e = 2.0 * unit * (3.0 * (reach + largest) + radius);
+        let relative = 8.0 * e / radius + 10.0 * T::ROUNDOFF;
+        // c < −c_error wherever |f|² (1 − relative) > r² + 16e².
+        let clear_squared = if relative < 0.5 {
+            (radius * radius + 16.0 * e * e) / (1.0 - relative)
+        } else {
+            f64::INFINITY
+        };
         Some(Self {
+            reach: T::from_f64(reach),
+            // Eight unit roundoffs pay for this number's own rounding.
+            clear_squared: T::from_f64(clear_squared * (1.0 + 8.0 * T::ROUNDOFF)),
+            clear: T::from_f64(radius * (1.0 + 60.0 * T::ROUNDOFF) + 6.0 * e),
             centre: [x[3], y[3], z[3]].map(T::from_f64),
             radius: T::from_f64(radius),
             radius_squared: T::from_f64(radius * radius),
-            offset_error: T::from_f64(6.5 * T::ROUNDOFF * (largest + radius)),
+            offset_error: T::from_f64(unit * (largest + radius)),
             curvature: T::from_f64(8.0 / radius),
         })
     }
@@ -43,9 +64,15 @@ impl<T: Scalar> Ball<T> {
 
 /// Where the lines meet the sphere.
 #[inline(always)]
-pub fn span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
+pub fn span<L: Lanes>(
+    l: L,
+    shape: &LaneShape<L::Scalar>,
+    ray: &LaneRay<L>,
+    asked: L::Mask,
+    limit: L::Real,
+) -> Span<L> {
     match &shape.ball {
-        Some(ball) => ball_span(l, ball, ray),
+        Some(ball) => ball_span(l, ball, ray, asked, limit),
         None => ellipsoid_span(l, shape, ray),
     }
 }
@@ -95,41 +122,52 @@ fn ellipsoid_span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>
 /// the centre over r, so that the bounds above, times r or r², hold with E r = 6u (max|o| + |c| + r),
 /// D r = 6u, and q = D r, where 64q² is less than u.
 ///
-/// Packets that surely pass the ball or leave it behind skip the roots.
+/// Packets that surely pass the ball, leave it behind or end before it are let go by bounds that
+/// hold for all usual rays.
 #[inline(always)]
-fn ball_span<L: Lanes>(l: L, ball: &Ball<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
+fn ball_span<L: Lanes>(
+    l: L,
+    ball: &Ball<L::Scalar>,
+    ray: &LaneRay<L>,
+    asked: L::Mask,
+    limit: L::Real,
+) -> Span<L> {
     let u = <L::Scalar as Scalar>::ROUNDOFF;
     let [cx, cy, cz] = ball.centre;
     let o = ray.origin - Vec3::new(l.splat(cx), l.splat(cy), l.splat(cz));
     let foot_t = -(o.dot(ray.direction) * ray.inverse_square);
     let foot = o.along(ray.direction, foot_t);
     let squared = foot.length_squared();
+    let clear = l.splat(ball.clear);
+    let apart =
+        squared.gt(l.splat(ball.clear_squared)) | foot_t.lt(-clear) | foot_t.gt(limit + clear);
+    let apart = apart & ray.extent.le(l.splat(ball.reach));
+    let nowhere = Enclosure::about(foot_t, l.real(0.0));
+    let mut span = Span {
+        near: nowhere,
+        far: nowhere,
+        hit: l.mask(false),
+        miss: apart,
+        parts: [l.int(0); 2],
+    };
+    if !(asked & !apart).any() {
+        return span;
+    }
     let radius_squared = l.splat(ball.radius_squared);
     let c = radius_squared - squared;
     let unit = l.real(6.5 * u);
     let e = (foot_t.abs() + ray.extent).mul_add(unit, l.splat(ball.offset_error));
     let relative = e.mul_add(l.splat(ball.curvature), l.real(9.0 * u));
     let c_error = (e * e).mul_add(l.real(16.0), relative * squared.max(radius_squared));
-    // Behind: the far end is at most t₀ + δt₀ + r, with 5e for δt₀ and its rounding.
-    let radius = l.splat(ball.radius);
-    let behind = foot_t.lt(-e.mul_add(l.real(5.0), radius.mul_add(l.real(50.0 * u), radius)));
-    let miss = c.lt(-c_error) | behind;
-    let mut span = Span {
-        near: Enclosure::about(foot_t, l.real(0.0)),
-        far: Enclosure::about(foot_t, l.real(0.0)),
-        hit: c.gt(c_error),
-        miss,
-        parts: [l.int(0); 2],
-    };
-    if (!miss).any() {
-        let half = (c.max(l.real(0.0)) * ray.inverse_square).sqrt();
-        let along = l
-            .splat(ball.radius)
-            .mul_add(l.real(40.0 * u), e * l.real(4.0));
-        let error = (foot_t.abs() + half).mul_add(l.real(9.0 * u), c_error / half + along);
-        span.near = Enclosure::about(foot_t - half, error);
-        span.far = Enclosure::about(foot_t + half, error);
-    }
+    span.miss = apart | c.lt(-c_error);
+    span.hit = c.gt(c_error) & !apart;
+    let half = (c.max(l.real(0.0)) * ray.inverse_square).sqrt();
+    let along = l
+        .splat(ball.radius)
+        .mul_add(l.real(40.0 * u), e * l.real(4.0));
+    let error = (foot_t.abs() + half).mul_add(l.real(9.0 * u), c_error / half + along);
+    span.near = Enclosure::about(foot_t - half, error);
+    span.far = Enclosure::about(foot_t + half, error);
     span
 }
 

@@ -1,0 +1,262 @@
+//! Two packets side by side.
+//!
+//! The loop's arithmetic is a long chain of dependent operations. A second, independent packet fills the
+//! time in which the first one waits. No lane sees its neighbours, so the bits stay the same.
+
+use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
+
+use super::lanes::{Int, Lanes, Mask, Real};
+use super::lookup::SMALL;
+
+/// Lanes of twice as many.
+#[derive(Clone, Copy)]
+pub struct Twice<L>(pub L);
+
+/// Values of both packets.
+#[derive(Clone, Copy)]
+pub struct Pair<V>(pub V, pub V);
+
+macro_rules! operator {
+    ($trait:ident, $method:ident) => {
+        impl<V: $trait<Output = V>> $trait for Pair<V> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(self.0.$method(other.0), self.1.$method(other.1))
+            }
+        }
+    };
+}
+
+operator!(Add, add);
+operator!(Sub, sub);
+operator!(Mul, mul);
+operator!(Div, div);
+operator!(BitAnd, bitand);
+operator!(BitOr, bitor);
+operator!(BitXor, bitxor);
+
+impl<V: Neg<Output = V>> Neg for Pair<V> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(-self.0, -self.1)
+    }
+}
+
+impl<V: Not<Output = V>> Not for Pair<V> {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(!self.0, !self.1)
+    }
+}
+
+impl<M: Mask> Mask for Pair<M> {
+    const COUNT: u32 = 2 * M::COUNT;
+    #[inline(always)]
+    fn any(self) -> bool {
+        (self.0 | self.1).any()
+    }
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        self.0.bits() | self.1.bits() << M::COUNT
+    }
+}
+
+macro_rules! forward {
+    ($(fn $method:ident(self $(, $other:ident)?) -> $result:ident;)*) => {
+        $(
+            #[inline(always)]
+            fn $method(self $(, $other: Self)?) -> forward!(@ $result) {
+                Pair(self.0.$method($($other.0)?), self.1.$method($($other.1)?))
+            }
+        )*
+    };
+    (@ Itself) => { Self };
+    (@ Truth) => { Self::Mask };
+}
+
+impl<R: Real> Real for Pair<R> {
+    type Mask = Pair<R::Mask>;
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        Self(self.0.mul_add(a.0, b.0), self.1.mul_add(a.1, b.1))
+    }
+    forward! {
+        fn sqrt(self) -> Itself;
+        fn abs(self) -> Itself;
+        fn min(self, other) -> Itself;
+        fn max(self, other) -> Itself;
+        fn floor(self) -> Itself;
+        fn round(self) -> Itself;
+        fn copysign(self, sign) -> Itself;
+        fn lt(self, other) -> Truth;
+        fn le(self, other) -> Truth;
+        fn gt(self, other) -> Truth;
+        fn ge(self, other) -> Truth;
+        fn same(self, other) -> Truth;
+    }
+}
+
+impl<I: Int> Int for Pair<I> {
+    type Mask = Pair<I::Mask>;
+    forward! {
+        fn plus(self, other) -> Itself;
+        fn minus(self, other) -> Itself;
+        fn times(self, other) -> Itself;
+        fn reversed(self) -> Itself;
+        fn same(self, other) -> Truth;
+        fn below(self, other) -> Truth;
+    }
+    #[inline(always)]
+    fn left(self, by: u32) -> Self {
+        Self(self.0.left(by), self.1.left(by))
+    }
+    #[inline(always)]
+    fn right(self, by: u32) -> Self {
+        Self(self.0.right(by), self.1.right(by))
+    }
+}
+
+impl<L: Lanes> Lanes for Twice<L> {
+    type Scalar = L::Scalar;
+    type Real = Pair<L::Real>;
+    type Int = Pair<L::Int>;
+    type Mask = Pair<L::Mask>;
+    const COUNT: usize = 2 * L::COUNT;
+    const UNIFORM_BITS: u32 = L::UNIFORM_BITS;
+
+    #[inline(always)]
+    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
+        self.0.vectorize(f)
+    }
+    #[inline(always)]
+    fn real(self, x: f64) -> Self::Real {
+        let x = self.0.real(x);
+        Pair(x, x)
+    }
+    #[inline(always)]
+    fn splat(self, x: Self::Scalar) -> Self::Real {
+        let x = self.0.splat(x);
+        Pair(x, x)
+    }
+    #[inline(always)]
+    fn int(self, x: u32) -> Self::Int {
+        let x = self.0.int(x);
+        Pair(x, x)
+    }
+    #[inline(always)]
+    fn mask(self, x: bool) -> Self::Mask {
+        let x = self.0.mask(x);
+        Pair(x, x)
+    }
+    #[inline(always)]
+    fn mask_from_bits(self, bits: u32) -> Self::Mask {
+        Pair(
+            self.0.mask_from_bits(bits & ((1 << L::COUNT) - 1)),
+            self.0.mask_from_bits(bits >> L::COUNT),
+        )
+    }
+    #[inline(always)]
+    fn load(self, from: &[Self::Scalar]) -> Self::Real {
+        Pair(self.0.load(from), self.0.load(&from[L::COUNT..]))
+    }
+    #[inline(always)]
+    fn store(self, x: Self::Real, to: &mut [Self::Scalar]) {
+        self.0.store(x.0, to);
+        self.0.store(x.1, &mut to[L::COUNT..]);
+    }
+    #[inline(always)]
+    fn load_int(self, from: &[u32]) -> Self::Int {
+        Pair(self.0.load_int(from), self.0.load_int(&from[L::COUNT..]))
+    }
+    #[inline(always)]
+    fn store_int(self, x: Self::Int, to: &mut [u32]) {
+        self.0.store_int(x.0, to);
+        self.0.store_int(x.1, &mut to[L::COUNT..]);
+    }
+    #[inline(always)]
+    fn gather(self, table: &[Self::Scalar], index: Self::Int) -> Self::Real {
+        Pair(self.0.gather(table, index.0), self.0.gather(table, index.1))
+    }
+    #[inline(always)]
+    fn lookup(self, table: &[Self::Scalar; SMALL], index: Self::Int) -> Self::Real {
+        Pair(self.0.lookup(table, index.0), self.0.lookup(table, index.1))
+    }
+    #[inline(always)]
+    fn lookup_int(self, table: &[u32; SMALL], index: Self::Int) -> Self::Int {
+        Pair(
+            self.0.lookup_int(table, index.0),
+            self.0.lookup_int(table, index.1),
+        )
+    }
+    #[inline(always)]
+    fn lane(self, x: Self::Real, i: usize) -> Self::Scalar {
+        if i < L::COUNT {
+            self.0.lane(x.0, i)
+        } else {
+            self.0.lane(x.1, i - L::COUNT)
+        }
+    }
+    #[inline(always)]
+    fn int_lane(self, x: Self::Int, i: usize) -> u32 {
+        if i < L::COUNT {
+            self.0.int_lane(x.0, i)
+        } else {
+            self.0.int_lane(x.1, i - L::COUNT)
+        }
+    }
+    #[inline(always)]
+    fn with_lane(self, x: Self::Real, i: usize, value: Self::Scalar) -> Self::Real {
+        if i < L::COUNT {
+            Pair(self.0.with_lane(x.0, i, value), x.1)
+        } else {
+            Pair(x.0, self.0.with_lane(x.1, i - L::COUNT, value))
+        }
+    }
+    #[inline(always)]
+    fn with_int_lane(self, x: Self::Int, i: usize, value: u32) -> Self::Int {
+        if i < L::COUNT {
+            Pair(self.0.with_int_lane(x.0, i, value), x.1)
+        } else {
+            Pair(x.0, self.0.with_int_lane(x.1, i - L::COUNT, value))
+        }
+    }
+    #[inline(always)]
+    fn select(self, m: Self::Mask, a: Self::Real, b: Self::Real) -> Self::Real {
+        Pair(self.0.select(m.0, a.0, b.0), self.0.select(m.1, a.1, b.1))
+    }
+    #[inline(always)]
+    fn select_int(self, m: Self::Mask, a: Self::Int, b: Self::Int) -> Self::Int {
+        Pair(
+            self.0.select_int(m.0, a.0, b.0),
+            self.0.select_int(m.1, a.1, b.1),
+        )
+    }
+    #[inline(always)]
+    fn truncate(self, x: Self::Real) -> Self::Int {
+        Pair(self.0.truncate(x.0), self.0.truncate(x.1))
+    }
+    #[inline(always)]
+    fn to_real(self, x: Self::Int) -> Self::Real {
+        Pair(self.0.to_real(x.0), self.0.to_real(x.1))
+    }
+    #[inline(always)]
+    fn split_exponent(self, x: Self::Real) -> (Self::Real, Self::Real) {
+        let (low, high) = (self.0.split_exponent(x.0), self.0.split_exponent(x.1));
+        (Pair(low.0, high.0), Pair(low.1, high.1))
+    }
+    #[inline(always)]
+    fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [Self::Scalar]) {
+        self.0.compress_into(x.0, keep.0, to);
+        let kept = keep.0.bits().count_ones() as usize;
+        self.0.compress_into(x.1, keep.1, &mut to[kept..]);
+    }
+    #[inline(always)]
+    fn compress_int_into(self, x: Self::Int, keep: Self::Mask, to: &mut [u32]) {
+        self.0.compress_int_into(x.0, keep.0, to);
+        let kept = keep.0.bits().count_ones() as usize;
+        self.0.compress_int_into(x.1, keep.1, &mut to[kept..]);
+    }
+}
