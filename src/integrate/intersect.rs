@@ -8,6 +8,7 @@ use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 use crate::shape::Tally;
 use crate::shape::hierarchy::{BoxRay, Descent};
+use crate::shape::implicit::placed::ImplicitTally;
 use crate::shape::lanes::implicit::StartSign;
 use crate::shape::lanes::{Enclosure, LaneRay, Span};
 use crate::shape::resolve::Departure;
@@ -24,6 +25,8 @@ pub struct Rungs {
     pub undecided: u64,
     /// Single questions that the ladder answered for those.
     pub ladder: Tally,
+    /// Rays asked about implicit surfaces, each surface counted.
+    pub implicit: ImplicitTally,
 }
 
 impl Rungs {
@@ -33,6 +36,7 @@ impl Rungs {
             rays: self.rays + other.rays,
             undecided: self.undecided + other.undecided,
             ladder: self.ladder.joined(other.ladder),
+            implicit: self.implicit.joined(other.implicit),
         }
     }
 }
@@ -365,7 +369,8 @@ pub fn nearest<L: Lanes>(
                     on: leaving.object.same(index),
                     inward: leaving.inward,
                 };
-                let (t, found) = implicit.first_change(l, ray, start, best.t, active);
+                let tally = &mut rungs.implicit;
+                let (t, found) = implicit.first_hit(l, ray, start, best.t, active, tally);
                 best.t = l.select(found, t, best.t);
                 let part = l.int(model.parts.first[*object as usize]);
                 best.part = l.select_int(found, part, best.part);
@@ -538,7 +543,9 @@ pub fn occluded<L: Lanes>(
                     inward: leaving.inward,
                 };
                 let wanted = active & !blocked & !shadow.except.same(index);
-                let (_, found) = implicit.first_change(l, &shadow.ray, start, shadow.limit, wanted);
+                let (ray, limit) = (&shadow.ray, shadow.limit);
+                let tally = &mut rungs.implicit;
+                let (_, found) = implicit.first_hit(l, ray, start, limit, wanted, tally);
                 blocked = blocked | (found & wanted);
             }
             blocked

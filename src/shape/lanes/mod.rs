@@ -17,6 +17,7 @@ use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::vec3::{Rows, Vec3};
 use crate::shape::ShapeKind;
 
+pub mod field;
 pub mod implicit;
 pub mod part;
 
