@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use super::model::{Many, Model};
-use super::pool::{WIDEST, array, each};
+use super::many::{self, candidates};
+use super::model::Model;
+use super::pool::each;
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 use crate::shape::Tally;
-use crate::shape::hierarchy::{BoxRay, Descent};
 use crate::shape::lanes::implicit::StartSign;
 use crate::shape::lanes::{Enclosure, LaneRay, Span};
 use crate::shape::resolve::Departure;
@@ -56,21 +56,21 @@ pub struct Nearest<L: Lanes> {
 }
 
 /// One object's answer for rays that start anywhere.
-struct Candidate<L: Lanes> {
+pub(super) struct Candidate<L: Lanes> {
     /// Where the crossing is; the lower end also of one that is not certain.
-    at: Enclosure<L>,
+    pub at: Enclosure<L>,
     /// There is a crossing that counts.
-    certain: L::Mask,
+    pub certain: L::Mask,
     /// There may be one.
-    possible: L::Mask,
+    pub possible: L::Mask,
     /// Which of the shape's parts it is on.
-    part: L::Int,
+    pub part: L::Int,
 }
 
 /// Picks the crossing that counts: the first one ahead, or the exit for rays that go inward from
 /// this object's own surface; none for rays that leave it outward.
 #[inline(always)]
-fn candidate<L: Lanes>(
+pub(super) fn candidate<L: Lanes>(
     l: L,
     span: &Span<L>,
     flat: bool,
@@ -127,18 +127,18 @@ fn departure<L: Lanes>(l: L, leaving: &Leaving<L>, i: usize) -> Departure {
 }
 
 /// The closest certain hits so far, and the earliest crossing that could be before them.
-struct Search<L: Lanes> {
+pub(super) struct Search<L: Lanes> {
     /// Where the closest certain hit is; infinite at first.
-    best: Enclosure<L>,
+    pub best: Enclosure<L>,
     /// Its part; [`NOTHING`] at first.
-    part: L::Int,
+    pub part: L::Int,
     /// Where the earliest of all other possible crossings could be.
-    rival: L::Real,
+    pub rival: L::Real,
 }
 
 impl<L: Lanes> Search<L> {
     #[inline(always)]
-    fn new(l: L) -> Self {
+    pub fn new(l: L) -> Self {
         let infinite = l.real(f64::INFINITY);
         Self {
             best: Enclosure {
@@ -183,7 +183,7 @@ impl<L: Lanes> Search<L> {
 
     /// The same as one copy of code, for the hierarchy.
     #[inline(never)]
-    fn ask_alone(
+    pub fn ask_alone(
         &mut self,
         l: L,
         model: &Model<L::Scalar>,
@@ -197,105 +197,6 @@ impl<L: Lanes> Search<L> {
             || self.ask(l, model, k, ray, leaving, asked),
         );
     }
-
-    /// Asks the objects whose boxes the rays meet, nearest boxes first, a round of one object a
-    /// ray at a time.
-    #[inline(never)]
-    fn of_many(
-        l: L,
-        model: &Model<L::Scalar>,
-        many: &Many<L::Scalar>,
-        ray: &LaneRay<L>,
-        leaving: &Leaving<L>,
-        active: L::Mask,
-    ) -> Self {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let mut search = Self::new(l);
-                for &k in &many.unbounded {
-                    search.ask_alone(l, model, k, ray, leaving, active);
-                }
-                let mut rays = Rounds::new(l, ray, active);
-                loop {
-                    let limits = array(l, search.best.high);
-                    let (mut pending, objects) = rays.next(many, active.bits(), &limits);
-                    if pending == 0 {
-                        return search;
-                    }
-                    let objects = l.load_int(&objects);
-                    while pending != 0 {
-                        let k = l.int_lane(objects, pending.trailing_zeros() as usize);
-                        let here = l.mask_from_bits(pending) & objects.same(l.int(k));
-                        pending &= !here.bits();
-                        search.ask_alone(l, model, k, ray, leaving, here);
-                    }
-                }
-            },
-        )
-    }
-}
-
-/// The ways of a packet's rays through the hierarchy.
-struct Rounds<T> {
-    rays: [BoxRay<T>; WIDEST],
-    descents: [Descent<T>; WIDEST],
-}
-
-impl<T: Scalar> Rounds<T> {
-    #[inline(always)]
-    fn new<L: Lanes<Scalar = T>>(l: L, ray: &LaneRay<L>, active: L::Mask) -> Self {
-        let (o, d) = (ray.origin, ray.direction);
-        let origins = [array(l, o.x), array(l, o.y), array(l, o.z)];
-        let directions = [array(l, d.x), array(l, d.y), array(l, d.z)];
-        let bits = active.bits();
-        Self {
-            rays: std::array::from_fn(|i| {
-                BoxRay::new(
-                    [origins[0][i], origins[1][i], origins[2][i]],
-                    [directions[0][i], directions[1][i], directions[2][i]],
-                )
-            }),
-            descents: std::array::from_fn(|i| Descent::new(bits >> i & 1 == 1)),
-        }
-    }
-
-    /// The next object of each of the rays in `bits` before its limit, and which rays have one.
-    #[inline(always)]
-    fn next(&mut self, many: &Many<T>, bits: u32, limits: &[T; WIDEST]) -> (u32, [u32; WIDEST]) {
-        let mut found = 0;
-        let mut objects = [NOTHING; WIDEST];
-        for i in each(bits) {
-            let next = many
-                .boxes
-                .next(&mut self.descents[i], &self.rays[i], limits[i]);
-            if let Some(object) = next {
-                found |= 1 << i;
-                objects[i] = object;
-            }
-        }
-        (found, objects)
-    }
-}
-
-/// The objects that one lane's ray could meet before `limit`; `None` for all.
-#[cold]
-fn candidates<L: Lanes>(
-    l: L,
-    model: &Model<L::Scalar>,
-    ray: &LaneRay<L>,
-    i: usize,
-    limit: L::Scalar,
-) -> Option<Vec<u32>> {
-    let many = model.hierarchy.as_ref()?;
-    let vector = |v: Vec3<L::Real>| [l.lane(v.x, i), l.lane(v.y, i), l.lane(v.z, i)];
-    let ray = BoxRay::new(vector(ray.origin), vector(ray.direction));
-    let mut descent = Descent::new(true);
-    let mut objects = many.unbounded.clone();
-    while let Some(object) = many.boxes.next(&mut descent, &ray, limit) {
-        objects.push(object);
-    }
-    Some(objects)
 }
 
 /// The closest hits of the active rays.
@@ -319,7 +220,7 @@ pub fn nearest<L: Lanes>(
                     }
                     search
                 }
-                Some(many) => Search::of_many(l, model, many, ray, leaving, active),
+                Some(many) => many::search(l, model, many, ray, leaving, active),
             };
             let high = search.best.high;
             let mut best = Nearest {
@@ -375,14 +276,14 @@ pub struct Shadow<L: Lanes> {
 }
 
 /// Which shadow rays are surely blocked, and which may be.
-struct Blocks<L: Lanes> {
-    blocked: L::Mask,
-    doubtful: L::Mask,
+pub(super) struct Blocks<L: Lanes> {
+    pub blocked: L::Mask,
+    pub doubtful: L::Mask,
 }
 
 impl<L: Lanes> Blocks<L> {
     #[inline(always)]
-    fn new(l: L) -> Self {
+    pub fn new(l: L) -> Self {
         Self {
             blocked: l.mask(false),
             doubtful: l.mask(false),
@@ -416,7 +317,7 @@ impl<L: Lanes> Blocks<L> {
 
     /// The same as one copy of code, for the hierarchy.
     #[inline(never)]
-    fn ask_alone(
+    pub fn ask_alone(
         &mut self,
         l: L,
         model: &Model<L::Scalar>,
@@ -429,43 +330,6 @@ impl<L: Lanes> Blocks<L> {
             #[inline(always)]
             || self.ask(l, model, k, shadow, leaving, asked),
         );
-    }
-
-    /// Asks the objects whose boxes the rays meet, until each ray is blocked or through.
-    #[inline(never)]
-    fn of_many(
-        l: L,
-        model: &Model<L::Scalar>,
-        many: &Many<L::Scalar>,
-        shadow: &Shadow<L>,
-        leaving: &Leaving<L>,
-        active: L::Mask,
-    ) -> Self {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let mut blocks = Self::new(l);
-                for &k in many.unbounded.iter().filter(|k| model.hides(**k)) {
-                    blocks.ask_alone(l, model, k, shadow, leaving, active);
-                }
-                let mut rays = Rounds::new(l, &shadow.ray, active);
-                let limits = array(l, shadow.limit);
-                loop {
-                    let open = active & !blocks.blocked;
-                    let (mut pending, objects) = rays.next(many, open.bits(), &limits);
-                    if pending == 0 {
-                        return blocks;
-                    }
-                    let objects = l.load_int(&objects);
-                    while pending != 0 {
-                        let k = l.int_lane(objects, pending.trailing_zeros() as usize);
-                        let here = l.mask_from_bits(pending) & objects.same(l.int(k));
-                        pending &= !here.bits();
-                        blocks.ask_alone(l, model, k, shadow, leaving, here);
-                    }
-                }
-            },
-        )
     }
 }
 
@@ -493,7 +357,7 @@ pub fn occluded<L: Lanes>(
                     }
                     blocks
                 }
-                Some(many) => Blocks::of_many(l, model, many, shadow, leaving, active),
+                Some(many) => many::blocks(l, model, many, shadow, leaving, active),
             };
             let Blocks {
                 mut blocked,
