@@ -24,18 +24,29 @@ struct Rays<T> {
     inward: u32,
 }
 
+/// 1/d.
+#[inline(always)]
+fn reciprocal<L: Lanes>(l: L, d: Vec3<L::Real>) -> Vec3<L::Real> {
+    let one = l.real(1.0);
+    Vec3::new(one / d.x, one / d.y, one / d.z)
+}
+
 impl<T: Scalar> Rays<T> {
     #[inline(always)]
-    fn new<L: Lanes<Scalar = T>>(l: L, ray: &LaneRay<L>, leaving: &Leaving<L>) -> Self {
+    fn new<L: Lanes<Scalar = T>>(
+        l: L,
+        ray: &LaneRay<L>,
+        inverse: Vec3<L::Real>,
+        leaving: &Leaving<L>,
+    ) -> Self {
         let (o, d) = (ray.origin, ray.direction);
-        let one = l.real(1.0);
         Self {
             origin: [array(l, o.x), array(l, o.y), array(l, o.z)],
             direction: [array(l, d.x), array(l, d.y), array(l, d.z)],
             inverse: [
-                array(l, one / d.x),
-                array(l, one / d.y),
-                array(l, one / d.z),
+                array(l, inverse.x),
+                array(l, inverse.y),
+                array(l, inverse.z),
             ],
             extent: array(l, ray.extent),
             inverse_square: array(l, ray.inverse_square),
@@ -191,14 +202,20 @@ pub(super) fn search<L: Lanes>(
             for &k in &many.broad {
                 search.ask_alone(l, model, k, ray, leaving, active);
             }
+            let inverse = reciprocal(l, ray.direction);
+            let met = many.boxes.meets(l, ray.origin, inverse, search.best.high);
+            let met = (active & met).bits();
+            if met == 0 {
+                return search;
+            }
             let mut low = array(l, search.best.low);
             let mut high = array(l, search.best.high);
             let mut part = int_array(l, search.part);
             let mut rival = array(l, search.rival);
             let n = l.narrow();
-            let rays = Rays::new(l, ray, leaving);
+            let rays = Rays::new(l, ray, inverse, leaving);
             let mut descent = Descent::new();
-            for i in each(active.bits()) {
+            for i in each(met) {
                 let mut closest = Closest {
                     low: low[i],
                     high: high[i],
@@ -278,13 +295,21 @@ pub(super) fn blocks<L: Lanes>(
             for &k in many.broad.iter().filter(|k| many.hides[**k as usize]) {
                 blocks.ask_alone(l, model, k, shadow, leaving, active);
             }
+            let inverse = reciprocal(l, shadow.ray.direction);
+            let met = many
+                .boxes
+                .meets(l, shadow.ray.origin, inverse, shadow.limit);
+            let met = (active & met & !blocks.blocked).bits();
+            if met == 0 {
+                return blocks;
+            }
             let n = l.narrow();
-            let rays = Rays::new(l, &shadow.ray, leaving);
+            let rays = Rays::new(l, &shadow.ray, inverse, leaving);
             let limits = array(l, shadow.limit);
             let excepted = int_array(l, shadow.except);
             let mut descent = Descent::new();
             let (mut blocked, mut doubtful) = (0, 0);
-            for i in each((active & !blocks.blocked).bits()) {
+            for i in each(met) {
                 descent.restart();
                 let lone = rays.lone(n, i);
                 let end = End {

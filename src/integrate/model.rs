@@ -93,12 +93,12 @@ pub struct Many<T> {
     pub hides: Vec<bool>,
 }
 
-/// Share of the lines through all boxes that meet a broad one: a packet asks an object at the price
-/// at which one ray asks it alone, and a quarter of its 16 or 32 rays pay for what the others save by
-/// knowing a hit early.
-const BROAD: f64 = 0.25;
-/// Most broad objects with boxes.
+/// Most objects with boxes that packets ask, at about the price of one visit of the hierarchy.
 const MOST_BROAD: usize = 8;
+/// Share of the lines through all boxes that meet a broad one. A packet of at least 8 rays asks an
+/// object at the price at which one ray asks it alone; twice that pays for what the hierarchy saves
+/// by knowing a hit beforehand.
+const BROAD: f64 = 0.25;
 
 impl<T: Scalar> Many<T> {
     /// Of the objects with bounds, those without, and those that can hide lights, in order.
@@ -108,13 +108,20 @@ impl<T: Scalar> Many<T> {
         shapes: &[LaneShape<T>],
         occluders: &[u32],
     ) -> Self {
-        let mut items = bounded.to_vec();
-        items.sort_by(|a, b| a.1.half_area().total_cmp(&b.1.half_area()));
         let mut broad = unbounded;
+        let is_ball = |item: &Item| shapes[item.0 as usize].ball().is_some();
+        let (mut items, others): (Vec<Item>, Vec<Item>) =
+            bounded.iter().partition(|item| is_ball(item));
+        let few = others.len() <= MOST_BROAD;
+        if few {
+            broad.extend(others.iter().map(|item| item.0));
+        } else {
+            items.extend(others);
+        }
+        items.sort_by(|a, b| a.1.half_area().total_cmp(&b.1.half_area()));
         for _ in 0..MOST_BROAD {
             let all = Bounds::around(&items).half_area();
-            let is_broad = |item: &mut Item| item.1.half_area() >= BROAD * all;
-            match items.pop_if(is_broad) {
+            match items.pop_if(|item| item.1.half_area() >= BROAD * all) {
                 Some((object, _)) => broad.push(object),
                 None => break,
             }

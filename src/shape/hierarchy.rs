@@ -12,6 +12,7 @@ use glam::DVec3;
 use super::lanes::LaneShape;
 use super::lanes::balls::{Balls, MOST};
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
+use crate::math::vec3::Vec3;
 use split::split;
 
 /// Children of a node.
@@ -98,6 +99,8 @@ struct Node<T> {
 pub struct Hierarchy<T> {
     nodes: Vec<Node<T>>,
     balls: Vec<Balls<T>>,
+    /// Lower and upper ends of the box around all, by axis.
+    all: [[T; 2]; 3],
 }
 
 /// One ray for box tests, the same in all lanes.
@@ -174,9 +177,14 @@ impl<T: Scalar> Default for Descent<T> {
 impl<T: Scalar> Hierarchy<T> {
     /// Builds the boxes over objects of the given shapes.
     pub fn new(objects: &[Item], shapes: &[LaneShape<T>]) -> Self {
+        let all = Bounds::around(objects);
         let mut hierarchy = Self {
             nodes: Vec::new(),
             balls: Vec::new(),
+            all: [0, 1, 2].map(|axis| {
+                let (low, high) = outward::<T>(all.low[axis], all.high[axis]);
+                [low, high]
+            }),
         };
         let mut order = objects.to_vec();
         hierarchy.node(&mut order, shapes, 0);
@@ -230,6 +238,35 @@ impl<T: Scalar> Hierarchy<T> {
         }
     }
 
+    /// Which rays, one a lane, meet the box around all before their limits; `inverse` are the
+    /// reciprocals of the direction's components.
+    #[inline(always)]
+    pub fn meets<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        origin: Vec3<L::Real>,
+        inverse: Vec3<L::Real>,
+        limit: L::Real,
+    ) -> L::Mask {
+        let zero = l.real(0.0);
+        let (mut near, mut far) = (zero, limit);
+        let axes = [
+            (origin.x, inverse.x),
+            (origin.y, inverse.y),
+            (origin.z, inverse.z),
+        ];
+        for (ends, (o, inverse)) in self.all.iter().zip(axes) {
+            let (low, high) = (l.splat(ends[0]), l.splat(ends[1]));
+            let backwards = inverse.lt(zero);
+            let ends = [
+                l.select(backwards, high, low),
+                l.select(backwards, low, high),
+            ];
+            narrow::<L>(&mut near, &mut far, ends, o, inverse);
+        }
+        met(l, near, far).1
+    }
+
     /// What the ray meets the box of before `limit` next, nearest boxes first.
     #[inline(always)]
     pub fn next<L: Lanes<Scalar = T>>(
@@ -275,17 +312,17 @@ impl<T: Scalar> Hierarchy<T> {
                 if ray.backwards[axis] {
                     (first, last) = (last, first);
                 }
-                let (o, inverse) = (ray.origin[axis], ray.inverse[axis]);
-                let first = (l.load(&first[from..]) - o) * inverse;
-                let last = (l.load(&last[from..]) - o) * inverse;
-                // 0 · ∞, a ray in the plane of a face, bounds nothing.
-                near = first.max(near);
-                far = last.min(far);
+                let ends = [l.load(&first[from..]), l.load(&last[from..])];
+                narrow::<L>(
+                    &mut near,
+                    &mut far,
+                    ends,
+                    ray.origin[axis],
+                    ray.inverse[axis],
+                );
             }
-            // (b − o)/d is off by at most 3u of itself, and these products by one more; doubled.
-            let slack = 8.0 * T::ROUNDOFF;
-            let near = near * l.real(1.0 - slack);
-            let mut met = near.le(far * l.real(1.0 + slack)).bits();
+            let (near, met) = met(l, near, far);
+            let mut met = met.bits();
             let mut entries = [T::default(); WIDTH];
             l.store(near, &mut entries);
             while met != 0 {
@@ -295,6 +332,29 @@ impl<T: Scalar> Hierarchy<T> {
             }
         }
     }
+}
+
+/// Narrows the part of a ray that is in a box by a slab, given by where the ray enters and leaves it.
+#[inline(always)]
+fn narrow<L: Lanes>(
+    near: &mut L::Real,
+    far: &mut L::Real,
+    [first, last]: [L::Real; 2],
+    origin: L::Real,
+    inverse: L::Real,
+) {
+    // 0 · ∞, a ray in the plane of a face, bounds nothing.
+    *near = ((first - origin) * inverse).max(*near);
+    *far = ((last - origin) * inverse).min(*far);
+}
+
+/// Where a box is entered at the earliest, and whether it may be met at all.
+#[inline(always)]
+fn met<L: Lanes>(l: L, near: L::Real, far: L::Real) -> (L::Real, L::Mask) {
+    // (b − o)/d is off by at most 3u of itself, and these products by one more; doubled.
+    let slack = 8.0 * L::Scalar::ROUNDOFF;
+    let near = near * l.real(1.0 - slack);
+    (near, near.le(far * l.real(1.0 + slack)))
 }
 
 /// The numbers of the type that enclose an interval, with room for the rounding of the bounds
