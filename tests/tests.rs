@@ -12,6 +12,7 @@ mod lane_functions;
 mod lane_shapes;
 mod lanes_support;
 mod lights;
+mod many_objects;
 mod oracle_primitives;
 mod sampling;
 mod scene_file;

@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use super::model::{Many, Model};
-use super::pool::{WIDEST, array, each};
+use super::many::{self, candidates};
+use super::model::Model;
+use super::pool::each;
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 use crate::shape::Tally;
-use crate::shape::hierarchy::{BoxRay, Descent};
 use crate::shape::implicit::placed::ImplicitTally;
 use crate::shape::lanes::implicit::StartSign;
 use crate::shape::lanes::{Enclosure, LaneRay, Span};
@@ -60,30 +60,30 @@ pub struct Nearest<L: Lanes> {
 }
 
 /// One object's answer for rays that start anywhere.
-struct Candidate<L: Lanes> {
+pub(super) struct Candidate<L: Lanes> {
     /// Where the crossing is; the lower end also of one that is not certain.
-    at: Enclosure<L>,
+    pub at: Enclosure<L>,
     /// There is a crossing that counts.
-    certain: L::Mask,
+    pub certain: L::Mask,
     /// There may be one.
-    possible: L::Mask,
+    pub possible: L::Mask,
     /// Which of the shape's parts it is on.
-    part: L::Int,
+    pub part: L::Int,
 }
 
-/// The lanes that one object is asked for.
+/// The lanes that are asked, each about one object.
 #[derive(Clone, Copy)]
-struct Asked<L: Lanes> {
+pub(super) struct Asked<L: Lanes> {
     /// All of them: rays that leave a convex surface outward, or a flat one, do not meet it again.
-    all: L::Mask,
+    pub all: L::Mask,
     /// Those that go inward from this object's own surface.
-    inside: L::Mask,
+    pub inside: L::Mask,
 }
 
 impl<L: Lanes> Asked<L> {
     #[inline(always)]
-    fn new(l: L, k: u32, flat: bool, leaving: &Leaving<L>, asked: L::Mask) -> Self {
-        let own = asked & leaving.object.same(l.int(k));
+    pub fn new(l: L, objects: L::Int, flat: bool, leaving: &Leaving<L>, asked: L::Mask) -> Self {
+        let own = asked & leaving.object.same(objects);
         let inside = if flat {
             l.mask(false)
         } else {
@@ -99,7 +99,7 @@ impl<L: Lanes> Asked<L> {
 /// Picks the crossing that counts: the first one ahead, or the exit for rays that go inward from
 /// this object's own surface.
 #[inline(always)]
-fn candidate<L: Lanes>(l: L, span: &Span<L>, asked: &Asked<L>) -> Candidate<L> {
+pub(super) fn candidate<L: Lanes>(l: L, span: &Span<L>, asked: &Asked<L>) -> Candidate<L> {
     let zero = l.real(0.0);
     let Span {
         mut near, far, hit, ..
@@ -145,18 +145,18 @@ fn departure<L: Lanes>(l: L, leaving: &Leaving<L>, i: usize) -> Departure {
 }
 
 /// The closest certain hits so far, and the earliest crossing that could be before them.
-struct Search<L: Lanes> {
+pub(super) struct Search<L: Lanes> {
     /// Where the closest certain hit is; infinite at first.
-    best: Enclosure<L>,
+    pub best: Enclosure<L>,
     /// Its part; [`NOTHING`] at first.
-    part: L::Int,
+    pub part: L::Int,
     /// Where the earliest of all other possible crossings could be.
-    rival: L::Real,
+    pub rival: L::Real,
 }
 
 impl<L: Lanes> Search<L> {
     #[inline(always)]
-    fn new(l: L) -> Self {
+    pub fn new(l: L) -> Self {
         let infinite = l.real(f64::INFINITY);
         Self {
             best: Enclosure {
@@ -181,7 +181,7 @@ impl<L: Lanes> Search<L> {
     ) {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
-        let asked = Asked::new(l, k, kind.is_flat(), leaving, asked);
+        let asked = Asked::new(l, l.int(k), kind.is_flat(), leaving, asked);
         let span = shape.span(l, ray, asked.all, self.best.high);
         if !(asked.all & !span.miss).any() {
             return;
@@ -199,7 +199,7 @@ impl<L: Lanes> Search<L> {
 
     /// The same as one copy of code, for the hierarchy.
     #[inline(never)]
-    fn ask_alone(
+    pub fn ask_alone(
         &mut self,
         l: L,
         model: &Model<L::Scalar>,
@@ -213,105 +213,6 @@ impl<L: Lanes> Search<L> {
             || self.ask(l, model, k, ray, leaving, asked),
         );
     }
-
-    /// Asks the objects whose boxes the rays meet, nearest boxes first, a round of one object a
-    /// ray at a time.
-    #[inline(never)]
-    fn of_many(
-        l: L,
-        model: &Model<L::Scalar>,
-        many: &Many<L::Scalar>,
-        ray: &LaneRay<L>,
-        leaving: &Leaving<L>,
-        active: L::Mask,
-    ) -> Self {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let mut search = Self::new(l);
-                for &k in &many.unbounded {
-                    search.ask_alone(l, model, k, ray, leaving, active);
-                }
-                let mut rays = Rounds::new(l, ray, active);
-                loop {
-                    let limits = array(l, search.best.high);
-                    let (mut pending, objects) = rays.next(many, active.bits(), &limits);
-                    if pending == 0 {
-                        return search;
-                    }
-                    let objects = l.load_int(&objects);
-                    while pending != 0 {
-                        let k = l.int_lane(objects, pending.trailing_zeros() as usize);
-                        let here = l.mask_from_bits(pending) & objects.same(l.int(k));
-                        pending &= !here.bits();
-                        search.ask_alone(l, model, k, ray, leaving, here);
-                    }
-                }
-            },
-        )
-    }
-}
-
-/// The ways of a packet's rays through the hierarchy.
-struct Rounds<T> {
-    rays: [BoxRay<T>; WIDEST],
-    descents: [Descent<T>; WIDEST],
-}
-
-impl<T: Scalar> Rounds<T> {
-    #[inline(always)]
-    fn new<L: Lanes<Scalar = T>>(l: L, ray: &LaneRay<L>, active: L::Mask) -> Self {
-        let (o, d) = (ray.origin, ray.direction);
-        let origins = [array(l, o.x), array(l, o.y), array(l, o.z)];
-        let directions = [array(l, d.x), array(l, d.y), array(l, d.z)];
-        let bits = active.bits();
-        Self {
-            rays: std::array::from_fn(|i| {
-                BoxRay::new(
-                    [origins[0][i], origins[1][i], origins[2][i]],
-                    [directions[0][i], directions[1][i], directions[2][i]],
-                )
-            }),
-            descents: std::array::from_fn(|i| Descent::new(bits >> i & 1 == 1)),
-        }
-    }
-
-    /// The next object of each of the rays in `bits` before its limit, and which rays have one.
-    #[inline(always)]
-    fn next(&mut self, many: &Many<T>, bits: u32, limits: &[T; WIDEST]) -> (u32, [u32; WIDEST]) {
-        let mut found = 0;
-        let mut objects = [NOTHING; WIDEST];
-        for i in each(bits) {
-            let next = many
-                .boxes
-                .next(&mut self.descents[i], &self.rays[i], limits[i]);
-            if let Some(object) = next {
-                found |= 1 << i;
-                objects[i] = object;
-            }
-        }
-        (found, objects)
-    }
-}
-
-/// The objects that one lane's ray could meet before `limit`; `None` for all.
-#[cold]
-fn candidates<L: Lanes>(
-    l: L,
-    model: &Model<L::Scalar>,
-    ray: &LaneRay<L>,
-    i: usize,
-    limit: L::Scalar,
-) -> Option<Vec<u32>> {
-    let many = model.hierarchy.as_ref()?;
-    let vector = |v: Vec3<L::Real>| [l.lane(v.x, i), l.lane(v.y, i), l.lane(v.z, i)];
-    let ray = BoxRay::new(vector(ray.origin), vector(ray.direction));
-    let mut descent = Descent::new(true);
-    let mut objects = many.unbounded.clone();
-    while let Some(object) = many.boxes.next(&mut descent, &ray, limit) {
-        objects.push(object);
-    }
-    Some(objects)
 }
 
 /// The closest hits of the active rays.
@@ -335,7 +236,7 @@ pub fn nearest<L: Lanes>(
                     }
                     search
                 }
-                Some(many) => Search::of_many(l, model, many, ray, leaving, active),
+                Some(many) => many::search(l, model, many, ray, leaving, active),
             };
             let high = search.best.high;
             let mut best = Nearest {
@@ -392,14 +293,14 @@ pub struct Shadow<L: Lanes> {
 }
 
 /// Which shadow rays are surely blocked, and which may be.
-struct Blocks<L: Lanes> {
-    blocked: L::Mask,
-    doubtful: L::Mask,
+pub(super) struct Blocks<L: Lanes> {
+    pub blocked: L::Mask,
+    pub doubtful: L::Mask,
 }
 
 impl<L: Lanes> Blocks<L> {
     #[inline(always)]
-    fn new(l: L) -> Self {
+    pub fn new(l: L) -> Self {
         Self {
             blocked: l.mask(false),
             doubtful: l.mask(false),
@@ -420,7 +321,7 @@ impl<L: Lanes> Blocks<L> {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
         let asked = asked & !shadow.except.same(l.int(k));
-        let asked = Asked::new(l, k, kind.is_flat(), leaving, asked);
+        let asked = Asked::new(l, l.int(k), kind.is_flat(), leaving, asked);
         let span = shape.span(l, &shadow.ray, asked.all, shadow.limit);
         if !(asked.all & !span.miss).any() {
             return;
@@ -432,7 +333,7 @@ impl<L: Lanes> Blocks<L> {
 
     /// The same as one copy of code, for the hierarchy.
     #[inline(never)]
-    fn ask_alone(
+    pub fn ask_alone(
         &mut self,
         l: L,
         model: &Model<L::Scalar>,
@@ -445,43 +346,6 @@ impl<L: Lanes> Blocks<L> {
             #[inline(always)]
             || self.ask(l, model, k, shadow, leaving, asked),
         );
-    }
-
-    /// Asks the objects whose boxes the rays meet, until each ray is blocked or through.
-    #[inline(never)]
-    fn of_many(
-        l: L,
-        model: &Model<L::Scalar>,
-        many: &Many<L::Scalar>,
-        shadow: &Shadow<L>,
-        leaving: &Leaving<L>,
-        active: L::Mask,
-    ) -> Self {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let mut blocks = Self::new(l);
-                for &k in many.unbounded.iter().filter(|k| model.hides(**k)) {
-                    blocks.ask_alone(l, model, k, shadow, leaving, active);
-                }
-                let mut rays = Rounds::new(l, &shadow.ray, active);
-                let limits = array(l, shadow.limit);
-                loop {
-                    let open = active & !blocks.blocked;
-                    let (mut pending, objects) = rays.next(many, open.bits(), &limits);
-                    if pending == 0 {
-                        return blocks;
-                    }
-                    let objects = l.load_int(&objects);
-                    while pending != 0 {
-                        let k = l.int_lane(objects, pending.trailing_zeros() as usize);
-                        let here = l.mask_from_bits(pending) & objects.same(l.int(k));
-                        pending &= !here.bits();
-                        blocks.ask_alone(l, model, k, shadow, leaving, here);
-                    }
-                }
-            },
-        )
     }
 }
 
@@ -509,7 +373,7 @@ pub fn occluded<L: Lanes>(
                     }
                     blocks
                 }
-                Some(many) => Blocks::of_many(l, model, many, shadow, leaving, active),
+                Some(many) => many::blocks(l, model, many, shadow, leaving, active),
             };
             let Blocks {
                 mut blocked,

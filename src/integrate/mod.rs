@@ -9,6 +9,7 @@ pub mod bounce;
 pub mod chunk;
 pub mod develop;
 pub mod intersect;
+mod many;
 pub mod model;
 pub mod parts;
 pub mod pool;

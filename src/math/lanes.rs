@@ -177,6 +177,8 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     type Real: Real<Mask = Self::Mask>;
     /// Unsigned integers.
     type Int: Int<Mask = Self::Mask>;
+    /// As many lanes as one packet has, where these are several packets.
+    type Narrow: Lanes<Scalar = Self::Scalar>;
     /// Truth values.
     type Mask: Mask;
     /// Number of lanes.
@@ -184,6 +186,8 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     /// Bits of a uniform variate that the significand holds.
     const UNIFORM_BITS: u32;
 
+    /// The token of one packet.
+    fn narrow(self) -> Self::Narrow;
     /// Runs `f` compiled for this instruction set; wrapped in a function that is not inlined, the
     /// boundary of a stage.
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R;
@@ -483,10 +487,15 @@ impl<S: Simd> Lanes for Single<S> {
     type Scalar = f32;
     type Real = f32x16<S>;
     type Int = u32x16<S>;
+    type Narrow = Self;
     type Mask = mask32x16<S>;
     const COUNT: usize = 16;
     const UNIFORM_BITS: u32 = 24;
 
+    #[inline(always)]
+    fn narrow(self) -> Self {
+        self
+    }
     #[inline(always)]
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
         self.0.vectorize(f)
@@ -607,10 +616,15 @@ impl<S: Simd> Lanes for Double<S> {
     type Scalar = f64;
     type Real = f64x8<S>;
     type Int = u64x8<S>;
+    type Narrow = Self;
     type Mask = mask64x8<S>;
     const COUNT: usize = 8;
     const UNIFORM_BITS: u32 = 32;
 
+    #[inline(always)]
+    fn narrow(self) -> Self {
+        self
+    }
     #[inline(always)]
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
         self.0.vectorize(f)

@@ -113,6 +113,7 @@ impl Int for u32 {
 }
 
 impl Lanes for One {
+    type Narrow = Self;
     type Scalar = f64;
     type Real = f64;
     type Int = u32;
@@ -120,6 +121,10 @@ impl Lanes for One {
     const COUNT: usize = 1;
     const UNIFORM_BITS: u32 = 32;
 
+    #[inline(always)]
+    fn narrow(self) -> Self {
+        self
+    }
     #[inline(always)]
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
         f()

@@ -123,10 +123,15 @@ impl<L: Lanes> Lanes for Twice<L> {
     type Scalar = L::Scalar;
     type Real = Pair<L::Real>;
     type Int = Pair<L::Int>;
+    type Narrow = L::Narrow;
     type Mask = Pair<L::Mask>;
     const COUNT: usize = 2 * L::COUNT;
     const UNIFORM_BITS: u32 = L::UNIFORM_BITS;
 
+    #[inline(always)]
+    fn narrow(self) -> L::Narrow {
+        self.0.narrow()
+    }
     #[inline(always)]
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
         self.0.vectorize(f)

@@ -17,7 +17,7 @@ use crate::math::affine::Affine;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Sequence;
 use crate::scene::{Emission, Light, Named, Object, Scene, Shape, Sides, Surface};
-use crate::shape::hierarchy::{Bounds, Hierarchy};
+use crate::shape::hierarchy::Bounds;
 use crate::shape::lanes::LaneShape;
 use crate::shape::lanes::implicit::LaneImplicit;
 use crate::shape::resolve::Resolver;
@@ -65,9 +65,13 @@ pub fn build<T: Scalar>(
     };
     let many = builder.bounded.len() > LARGEST_LIST;
     let model = Model {
-        hierarchy: many.then(|| Many {
-            boxes: Hierarchy::new(&builder.bounded),
-            unbounded: builder.unbounded,
+        hierarchy: many.then(|| {
+            Many::new(
+                &builder.bounded,
+                builder.unbounded,
+                &builder.shapes,
+                &occluders,
+            )
         }),
         camera: LaneCamera::new(&scene.camera, scene.image.size),
         sequence: Sequence::new(

@@ -1,23 +1,30 @@
 //! A hierarchy of bounding boxes for scenes of many objects.
 //!
-//! Nodes have [`WIDTH`] children, whose boxes are tested together: one ray, many boxes, since the
-//! rays of a packet share no way after the first bounce. Every bound is outward, so that an object
-//! is skipped only if the ray surely misses its box.
+//! Nodes have [`WIDTH`] children, whose boxes are tested together: lanes are boxes, since the rays of
+//! a packet share no way after the first bounce. A child is a node, up to [`WIDTH`] balls that are
+//! tested together too, or one object of another shape. Every bound is outward, so that an object is
+//! skipped only if the ray surely misses its box.
+
+mod split;
 
 use glam::DVec3;
 
-use crate::math::lanes::Scalar;
+use super::lanes::LaneShape;
+use super::lanes::balls::{Balls, MOST};
+use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
+use crate::math::vec3::Vec3;
+use split::split;
 
 /// Children of a node.
-pub const WIDTH: usize = 8;
-/// Marks a child that is an object.
-const OBJECT: u32 = 1 << 31;
-/// Marks a place without a child.
-const EMPTY: u32 = u32::MAX;
-/// Levels of a tree over 2³¹ objects, each but the last of which splits at least in two.
-const DEEPEST: usize = 31;
+pub const WIDTH: usize = MOST;
+/// Levels whose nodes are split where it saves most; deeper nodes, of which only strange scenes have
+/// any, are halved.
+const FREE_LEVELS: usize = 12;
+/// Levels below those of a tree over 2³² objects: each of 16 children has at most an eighth of its
+/// node's objects.
+const HALVED_LEVELS: usize = 11;
 /// Most entries that wait while a ray descends.
-const STACK: usize = DEEPEST * (WIDTH - 1) + 1;
+const STACK: usize = (FREE_LEVELS + HALVED_LEVELS) * (WIDTH - 1) + 1;
 
 /// An axis-aligned box.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,8 +35,57 @@ pub struct Bounds {
     pub high: DVec3,
 }
 
+impl Bounds {
+    /// The box of nothing.
+    const NOTHING: Self = Self {
+        low: DVec3::INFINITY,
+        high: DVec3::NEG_INFINITY,
+    };
+
+    /// The box of both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+        }
+    }
+
+    /// The box of all.
+    pub fn around<'a>(items: impl IntoIterator<Item = &'a Item>) -> Self {
+        let boxes = items.into_iter().map(|(_, bounds)| *bounds);
+        boxes.fold(Self::NOTHING, Self::union)
+    }
+
+    /// Half its surface, to which the number of random lines that meet it is proportional; 0 for
+    /// nothing.
+    pub fn half_area(&self) -> f64 {
+        let side = (self.high - self.low).max(DVec3::ZERO);
+        side.x * side.y + side.y * side.z + side.z * side.x
+    }
+}
+
 /// An object's index and its box.
-type Item = (u32, Bounds);
+pub type Item = (u32, Bounds);
+
+/// What a child is.
+#[derive(Debug, Clone, Copy)]
+pub enum Child<'a, T> {
+    /// Balls.
+    Balls(&'a Balls<T>),
+    /// An object of another shape.
+    Object(u32),
+}
+
+/// A child in a word: the kind in the highest two bits, below them an index.
+mod word {
+    pub const NODE: u32 = 0;
+    pub const BALLS: u32 = 1 << 30;
+    pub const OBJECT: u32 = 2 << 30;
+    pub const KIND: u32 = 3 << 30;
+    /// Where there is no child.
+    pub const EMPTY: u32 = u32::MAX;
+}
 
 #[derive(Debug, Clone)]
 struct Node<T> {
@@ -42,89 +98,122 @@ struct Node<T> {
 #[derive(Debug, Clone, Default)]
 pub struct Hierarchy<T> {
     nodes: Vec<Node<T>>,
+    balls: Vec<Balls<T>>,
+    /// Lower and upper ends of the box around all, by axis.
+    all: [[T; 2]; 3],
 }
 
-/// A ray for box tests.
+/// One ray for box tests, the same in all lanes.
 #[derive(Clone, Copy)]
-pub struct BoxRay<T> {
-    origin: [T; 3],
-    inverse: [T; 3],
+pub struct BoxRay<L: Lanes> {
+    origin: [L::Real; 3],
+    inverse: [L::Real; 3],
+    backwards: [bool; 3],
 }
 
-impl<T: Scalar> BoxRay<T> {
-    /// From origin and direction.
+impl<L: Lanes> BoxRay<L> {
+    /// From the origin and the reciprocals of the direction's components.
     #[inline(always)]
-    pub fn new(origin: [T; 3], direction: [T; 3]) -> Self {
-        let one = T::from_f64(1.0);
+    pub fn new(l: L, origin: [L::Scalar; 3], inverse: [L::Scalar; 3]) -> Self {
+        let zero = L::Scalar::default();
+        let splat = inlined(
+            #[inline(always)]
+            |x: L::Scalar| l.splat(x),
+        );
         Self {
-            origin,
-            inverse: direction.map(
+            origin: origin.map(&splat),
+            inverse: inverse.map(&splat),
+            backwards: inverse.map(
                 #[inline(always)]
-                |d| one / d,
+                |x| x < zero,
             ),
         }
     }
 }
 
-/// Where one ray is on its way through a hierarchy.
+/// Where rays are on their way through a hierarchy, one after the other.
 pub struct Descent<T> {
+    /// Children to visit and where the ray enters their boxes.
     stack: [(T, u32); STACK],
     length: usize,
 }
 
 impl<T: Scalar> Descent<T> {
-    /// At the root, or nowhere for a ray that is not asked about.
+    /// Nowhere.
     #[inline(always)]
-    pub fn new(active: bool) -> Self {
+    pub fn new() -> Self {
         Self {
             stack: [(T::default(), 0); STACK],
-            length: usize::from(active),
+            length: 0,
         }
+    }
+
+    /// Puts the next ray at the root.
+    #[inline(always)]
+    pub fn restart(&mut self) {
+        self.stack[0] = (T::default(), word::NODE);
+        self.length = 1;
+    }
+
+    /// Inserts a child among those of its node, which lie from `bottom` on, nearest on top.
+    #[inline(always)]
+    fn insert(&mut self, bottom: usize, near: T, child: u32) {
+        let mut at = self.length;
+        self.length += 1;
+        while at > bottom && self.stack[at - 1].0 < near {
+            self.stack[at] = self.stack[at - 1];
+            at -= 1;
+        }
+        self.stack[at] = (near, child);
+    }
+}
+
+impl<T: Scalar> Default for Descent<T> {
+    fn default() -> Self {
+        Self::new()
     }
 }
 
 impl<T: Scalar> Hierarchy<T> {
-    /// Builds the boxes over objects: ranges are halved at the median along their longest side,
-    /// three times a node.
-    pub fn new(objects: &[(u32, Bounds)]) -> Self {
-        let mut hierarchy = Self { nodes: Vec::new() };
+    /// Builds the boxes over objects of the given shapes.
+    pub fn new(objects: &[Item], shapes: &[LaneShape<T>]) -> Self {
+        let all = Bounds::around(objects);
+        let mut hierarchy = Self {
+            nodes: Vec::new(),
+            balls: Vec::new(),
+            all: [0, 1, 2].map(|axis| {
+                let (low, high) = outward::<T>(all.low[axis], all.high[axis]);
+                [low, high]
+            }),
+        };
         let mut order = objects.to_vec();
-        hierarchy.node(&mut order);
+        hierarchy.node(&mut order, shapes, 0);
         hierarchy
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.nodes.len() * size_of::<Node<T>>()
+        self.nodes.len() * size_of::<Node<T>>() + self.balls.len() * size_of::<Balls<T>>()
     }
 
-    fn node(&mut self, objects: &mut [Item]) -> u32 {
+    /// Adds a node over objects, and all below it.
+    fn node(&mut self, objects: &mut [Item], shapes: &[LaneShape<T>], level: usize) -> u32 {
         let index = self.nodes.len();
         // An inverted box is missed by every ray.
         self.nodes.push(Node {
             low: [[T::from_f64(f64::INFINITY); WIDTH]; 3],
             high: [[T::from_f64(f64::NEG_INFINITY); WIDTH]; 3],
-            child: [EMPTY; WIDTH],
+            child: [word::EMPTY; WIDTH],
         });
-        let mut parts = vec![objects];
-        while parts.len() < WIDTH {
-            let Some(largest) = (0..parts.len()).max_by_key(|&i| parts[i].len()) else {
-                break;
-            };
-            if parts[largest].len() < 2 {
-                break;
-            }
-            let part = parts.swap_remove(largest);
-            let (a, b) = halves(part);
-            parts.extend([a, b]);
-        }
+        let is_ball = |object: u32| {
+            shapes
+                .get(object as usize)
+                .is_some_and(|s| s.ball().is_some())
+        };
+        let parts = split(objects, WIDTH, level < FREE_LEVELS, is_ball);
         for (i, part) in parts.into_iter().enumerate() {
-            let bounds = union(part);
-            let child = match part {
-                [] => continue,
-                [(object, _)] => *object | OBJECT,
-                _ => self.node(part),
-            };
+            let bounds = Bounds::around(&*part);
+            let child = self.child(part, shapes, level);
             let node = &mut self.nodes[index];
             node.child[i] = child;
             for axis in 0..3 {
@@ -136,64 +225,136 @@ impl<T: Scalar> Hierarchy<T> {
         index as u32
     }
 
-    /// The next object whose box the ray meets before `limit`, nearest boxes first.
+    /// The word of a child that stands for objects.
+    fn child(&mut self, objects: &mut [Item], shapes: &[LaneShape<T>], level: usize) -> u32 {
+        let numbers: Vec<u32> = objects.iter().take(MOST + 1).map(|(k, _)| *k).collect();
+        if let Some(balls) = Balls::new(&numbers, shapes) {
+            self.balls.push(balls);
+            return word::BALLS | (self.balls.len() - 1) as u32;
+        }
+        match *numbers {
+            [object] => word::OBJECT | object,
+            _ => word::NODE | self.node(objects, shapes, level + 1),
+        }
+    }
+
+    /// Which rays, one a lane, meet the box around all before their limits; `inverse` are the
+    /// reciprocals of the direction's components.
     #[inline(always)]
-    pub fn next(&self, descent: &mut Descent<T>, ray: &BoxRay<T>, limit: T) -> Option<u32> {
+    pub fn meets<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        origin: Vec3<L::Real>,
+        inverse: Vec3<L::Real>,
+        limit: L::Real,
+    ) -> L::Mask {
+        let zero = l.real(0.0);
+        let (mut near, mut far) = (zero, limit);
+        let axes = [
+            (origin.x, inverse.x),
+            (origin.y, inverse.y),
+            (origin.z, inverse.z),
+        ];
+        for (ends, (o, inverse)) in self.all.iter().zip(axes) {
+            let (low, high) = (l.splat(ends[0]), l.splat(ends[1]));
+            let backwards = inverse.lt(zero);
+            let ends = [
+                l.select(backwards, high, low),
+                l.select(backwards, low, high),
+            ];
+            narrow::<L>(&mut near, &mut far, ends, o, inverse);
+        }
+        met(l, near, far).1
+    }
+
+    /// What the ray meets the box of before `limit` next, nearest boxes first.
+    #[inline(always)]
+    pub fn next<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        descent: &mut Descent<T>,
+        ray: &BoxRay<L>,
+        limit: T,
+    ) -> Option<Child<'_, T>> {
         while descent.length > 0 {
             descent.length -= 1;
             let (near, child) = descent.stack[descent.length];
             if near > limit {
                 continue;
             }
-            if child & OBJECT != 0 {
-                return Some(child & !OBJECT);
+            let index = child & !word::KIND;
+            match child & word::KIND {
+                word::NODE => self.open(l, descent, ray, limit, index),
+                word::BALLS => return Some(Child::Balls(&self.balls[index as usize])),
+                _ => return Some(Child::Object(index)),
             }
-            self.open(descent, ray, limit, child);
         }
         None
     }
 
-    /// Puts the children of a node that the ray meets on the stack, nearest on top.
+    /// Puts the children of a node that the ray meets before `limit` on the stack.
     #[inline(always)]
-    fn open(&self, descent: &mut Descent<T>, ray: &BoxRay<T>, limit: T, node: u32) {
+    fn open<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        descent: &mut Descent<T>,
+        ray: &BoxRay<L>,
+        limit: T,
+        node: u32,
+    ) {
         let node = &self.nodes[node as usize];
-        let mut near = [T::default(); WIDTH];
-        let mut far = [limit; WIDTH];
-        // (b − o)/d is off by at most 3u of itself.
-        let slack = T::from_f64(4.0 * T::ROUNDOFF);
-        for axis in 0..3 {
-            let (o, inverse) = (ray.origin[axis], ray.inverse[axis]);
-            for i in 0..WIDTH {
-                let a = (node.low[axis][i] - o) * inverse;
-                let b = (node.high[axis][i] - o) * inverse;
-                let (first, last) = if a < b { (a, b) } else { (b, a) };
-                let first = first - slack * magnitude(first);
-                let last = last + slack * magnitude(last);
-                // 0 · ∞, a ray in the plane of a face, compares false and bounds nothing.
-                near[i] = if first > near[i] { first } else { near[i] };
-                far[i] = if last < far[i] { last } else { far[i] };
-            }
-        }
         let bottom = descent.length;
-        for i in 0..WIDTH {
-            if node.child[i] == EMPTY || near[i] > far[i] {
-                continue;
+        for from in (0..WIDTH).step_by(L::COUNT) {
+            let mut near = l.real(0.0);
+            let mut far = l.splat(limit);
+            for axis in 0..3 {
+                let (mut first, mut last) = (&node.low[axis], &node.high[axis]);
+                if ray.backwards[axis] {
+                    (first, last) = (last, first);
+                }
+                let ends = [l.load(&first[from..]), l.load(&last[from..])];
+                narrow::<L>(
+                    &mut near,
+                    &mut far,
+                    ends,
+                    ray.origin[axis],
+                    ray.inverse[axis],
+                );
             }
-            let mut at = descent.length;
-            descent.length += 1;
-            while at > bottom && descent.stack[at - 1].0 < near[i] {
-                descent.stack[at] = descent.stack[at - 1];
-                at -= 1;
+            let (near, met) = met(l, near, far);
+            let mut met = met.bits();
+            let mut entries = [T::default(); WIDTH];
+            l.store(near, &mut entries);
+            while met != 0 {
+                let i = met.trailing_zeros() as usize % WIDTH;
+                met &= met - 1;
+                descent.insert(bottom, entries[i], node.child[(from + i) % WIDTH]);
             }
-            descent.stack[at] = (near[i], node.child[i]);
         }
     }
 }
 
+/// Narrows the part of a ray that is in a box by a slab, given by where the ray enters and leaves it.
 #[inline(always)]
-fn magnitude<T: Scalar>(x: T) -> T {
-    let zero = T::default();
-    if x < zero { zero - x } else { x }
+fn narrow<L: Lanes>(
+    near: &mut L::Real,
+    far: &mut L::Real,
+    [first, last]: [L::Real; 2],
+    origin: L::Real,
+    inverse: L::Real,
+) {
+    // 0 · ∞, a ray in the plane of a face, bounds nothing.
+    *near = ((first - origin) * inverse).max(*near);
+    *far = ((last - origin) * inverse).min(*far);
+}
+
+/// Where a box is entered at the earliest, and whether it may be met at all.
+#[inline(always)]
+fn met<L: Lanes>(l: L, near: L::Real, far: L::Real) -> (L::Real, L::Mask) {
+    // (b − o)/d is off by at most 3u of itself, and these products by one more; doubled.
+    let slack = 8.0 * L::Scalar::ROUNDOFF;
+    let near = near * l.real(1.0 - slack);
+    (near, near.le(far * l.real(1.0 + slack)))
 }
 
 /// The numbers of the type that enclose an interval, with room for the rounding of the bounds
@@ -204,31 +365,4 @@ fn outward<T: Scalar>(low: f64, high: f64) -> (T, T) {
         T::from_f64(low - slack(low)),
         T::from_f64(high + slack(high)),
     )
-}
-
-fn union(objects: &[Item]) -> Bounds {
-    let mut all = Bounds {
-        low: DVec3::INFINITY,
-        high: DVec3::NEG_INFINITY,
-    };
-    for (_, bounds) in objects {
-        all.low = all.low.min(bounds.low);
-        all.high = all.high.max(bounds.high);
-    }
-    all
-}
-
-/// Two halves by the order of the centres along the longest side, ties by index.
-fn halves(objects: &mut [Item]) -> (&mut [Item], &mut [Item]) {
-    let bounds = union(objects);
-    let sides = bounds.high - bounds.low;
-    let axis = sides.max_position();
-    let middle = objects.len() / 2;
-    objects.select_nth_unstable_by(middle, |a, b| {
-        let centre = |b: &Bounds| b.low[axis] + b.high[axis];
-        centre(&a.1)
-            .total_cmp(&centre(&b.1))
-            .then_with(|| a.0.cmp(&b.0))
-    });
-    objects.split_at_mut(middle)
 }

@@ -17,6 +17,7 @@ use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::vec3::{Rows, Vec3};
 use crate::shape::ShapeKind;
 
+pub mod balls;
 pub mod field;
 pub mod implicit;
 pub mod part;
@@ -174,6 +175,14 @@ impl<T: Scalar> LaneShape<T> {
                 miss: l.mask(true),
                 parts: [l.int(0); 2],
             },
+        }
+    }
+
+    /// The ball that this shape is, if it is one.
+    pub fn ball(&self) -> Option<&sphere::Ball<T>> {
+        match self.kind {
+            Some(ShapeKind::Sphere) => self.ball.as_ref(),
+            _ => None,
         }
     }
 

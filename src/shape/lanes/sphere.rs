@@ -12,17 +12,17 @@ pub struct Ball<T> {
     pub centre: [T; 3],
     /// Its radius.
     pub radius: T,
-    radius_squared: T,
+    pub(super) radius_squared: T,
     /// 6u (|c| + r): what the centre's rounding and the ray's cost beside 6u max|o|.
-    offset_error: T,
+    pub(super) offset_error: T,
     /// 8/r.
-    curvature: T,
+    pub(super) curvature: T,
     /// Largest max|o| for which the two bounds below hold.
-    reach: T,
+    pub(super) reach: T,
     /// Squared distance from the centre beyond which a line surely passes.
-    clear_squared: T,
+    pub(super) clear_squared: T,
     /// Distance along the ray from its foot beyond which it is surely not near.
-    clear: T,
+    pub(super) clear: T,
 }
 
 impl<T: Scalar> Ball<T> {
@@ -60,6 +60,55 @@ impl<T: Scalar> Ball<T> {
             curvature: T::from_f64(8.0 / radius),
         })
     }
+}
+
+/// Where the numbers of the ball that a lane asks come from.
+pub trait Asked<L: Lanes> {
+    /// [`Ball::centre`].
+    fn centre(&self, l: L) -> Vec3<L::Real>;
+    /// [`Ball::radius`].
+    fn radius(&self, l: L) -> L::Real;
+    /// Its square.
+    fn radius_squared(&self, l: L) -> L::Real;
+    /// [`Ball::offset_error`].
+    fn offset_error(&self, l: L) -> L::Real;
+    /// [`Ball::curvature`].
+    fn curvature(&self, l: L) -> L::Real;
+    /// [`Ball::reach`].
+    fn reach(&self, l: L) -> L::Real;
+    /// [`Ball::clear_squared`].
+    fn clear_squared(&self, l: L) -> L::Real;
+    /// [`Ball::clear`].
+    fn clear(&self, l: L) -> L::Real;
+}
+
+macro_rules! numbers {
+    ($($name:ident),*) => {
+        $(
+            #[inline(always)]
+            fn $name(&self, l: L) -> L::Real {
+                l.splat(self.$name)
+            }
+        )*
+    };
+}
+
+/// All lanes ask the same ball.
+impl<L: Lanes> Asked<L> for Ball<L::Scalar> {
+    #[inline(always)]
+    fn centre(&self, l: L) -> Vec3<L::Real> {
+        let [x, y, z] = self.centre;
+        Vec3::new(l.splat(x), l.splat(y), l.splat(z))
+    }
+    numbers!(
+        radius,
+        radius_squared,
+        offset_error,
+        curvature,
+        reach,
+        clear_squared,
+        clear
+    );
 }
 
 /// Where the lines meet the sphere.
@@ -125,23 +174,21 @@ fn ellipsoid_span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>
 /// Packets that surely pass the ball, leave it behind or end before it are let go by bounds that
 /// hold for all usual rays.
 #[inline(always)]
-fn ball_span<L: Lanes>(
+pub fn ball_span<L: Lanes>(
     l: L,
-    ball: &Ball<L::Scalar>,
+    ball: &impl Asked<L>,
     ray: &LaneRay<L>,
     asked: L::Mask,
     limit: L::Real,
 ) -> Span<L> {
     let u = <L::Scalar as Scalar>::ROUNDOFF;
-    let [cx, cy, cz] = ball.centre;
-    let o = ray.origin - Vec3::new(l.splat(cx), l.splat(cy), l.splat(cz));
+    let o = ray.origin - ball.centre(l);
     let foot_t = -(o.dot(ray.direction) * ray.inverse_square);
     let foot = o.along(ray.direction, foot_t);
     let squared = foot.length_squared();
-    let clear = l.splat(ball.clear);
-    let apart =
-        squared.gt(l.splat(ball.clear_squared)) | foot_t.lt(-clear) | foot_t.gt(limit + clear);
-    let apart = apart & ray.extent.le(l.splat(ball.reach));
+    let clear = ball.clear(l);
+    let apart = squared.gt(ball.clear_squared(l)) | foot_t.lt(-clear) | foot_t.gt(limit + clear);
+    let apart = apart & ray.extent.le(ball.reach(l));
     let nowhere = Enclosure::about(foot_t, l.real(0.0));
     let mut span = Span {
         near: nowhere,
@@ -153,18 +200,16 @@ fn ball_span<L: Lanes>(
     if !(asked & !apart).any() {
         return span;
     }
-    let radius_squared = l.splat(ball.radius_squared);
+    let radius_squared = ball.radius_squared(l);
     let c = radius_squared - squared;
     let unit = l.real(6.5 * u);
-    let e = (foot_t.abs() + ray.extent).mul_add(unit, l.splat(ball.offset_error));
-    let relative = e.mul_add(l.splat(ball.curvature), l.real(9.0 * u));
+    let e = (foot_t.abs() + ray.extent).mul_add(unit, ball.offset_error(l));
+    let relative = e.mul_add(ball.curvature(l), l.real(9.0 * u));
     let c_error = (e * e).mul_add(l.real(16.0), relative * squared.max(radius_squared));
     span.miss = apart | c.lt(-c_error);
     span.hit = c.gt(c_error) & !apart;
     let half = (c.max(l.real(0.0)) * ray.inverse_square).sqrt();
-    let along = l
-        .splat(ball.radius)
-        .mul_add(l.real(40.0 * u), e * l.real(4.0));
+    let along = ball.radius(l).mul_add(l.real(40.0 * u), e * l.real(4.0));
     let error = (foot_t.abs() + half).mul_add(l.real(9.0 * u), c_error / half + along);
     span.near = Enclosure::about(foot_t - half, error);
     span.far = Enclosure::about(foot_t + half, error);

@@ -1,0 +1,419 @@
+//! Rays against many objects.
+//!
+//! First a packet asks the few broad objects together. Then its rays go through the hierarchy one by
+//! one, and the lanes are boxes, or balls: the answers for a ray depend neither on its neighbours
+//! nor on their number.
+
+use super::intersect::{Asked, Blocks, Candidate, Leaving, Search, Shadow, candidate};
+use super::model::{Many, Model};
+use super::pool::{WIDEST, array, each, int_array};
+use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
+use crate::math::vec3::Vec3;
+use crate::shape::hierarchy::{BoxRay, Child, Descent, WIDTH};
+use crate::shape::lanes::balls::Balls;
+use crate::shape::lanes::{Enclosure, LaneRay};
+
+/// A packet's rays as arrays, to be taken one by one.
+struct Rays<T> {
+    origin: [[T; WIDEST]; 3],
+    direction: [[T; WIDEST]; 3],
+    inverse: [[T; WIDEST]; 3],
+    extent: [T; WIDEST],
+    inverse_square: [T; WIDEST],
+    leaving: [u32; WIDEST],
+    inward: u32,
+}
+
+/// 1/d.
+#[inline(always)]
+fn reciprocal<L: Lanes>(l: L, d: Vec3<L::Real>) -> Vec3<L::Real> {
+    let one = l.real(1.0);
+    Vec3::new(one / d.x, one / d.y, one / d.z)
+}
+
+impl<T: Scalar> Rays<T> {
+    #[inline(always)]
+    fn new<L: Lanes<Scalar = T>>(
+        l: L,
+        ray: &LaneRay<L>,
+        inverse: Vec3<L::Real>,
+        leaving: &Leaving<L>,
+    ) -> Self {
+        let (o, d) = (ray.origin, ray.direction);
+        Self {
+            origin: [array(l, o.x), array(l, o.y), array(l, o.z)],
+            direction: [array(l, d.x), array(l, d.y), array(l, d.z)],
+            inverse: [
+                array(l, inverse.x),
+                array(l, inverse.y),
+                array(l, inverse.z),
+            ],
+            extent: array(l, ray.extent),
+            inverse_square: array(l, ray.inverse_square),
+            leaving: int_array(l, leaving.object),
+            inward: leaving.inward.bits(),
+        }
+    }
+
+    /// Ray `i` in all lanes.
+    #[inline(always)]
+    fn lone<N: Lanes<Scalar = T>>(&self, n: N, i: usize) -> Lone<N> {
+        let origin = one_of(&self.origin, i);
+        let inverse = one_of(&self.inverse, i);
+        let vector = inlined(
+            #[inline(always)]
+            |[x, y, z]: [T; 3]| Vec3::new(n.splat(x), n.splat(y), n.splat(z)),
+        );
+        Lone {
+            ray: LaneRay {
+                origin: vector(origin),
+                direction: vector(one_of(&self.direction, i)),
+                extent: n.splat(self.extent[i]),
+                inverse_square: n.splat(self.inverse_square[i]),
+            },
+            leaving: Leaving {
+                object: n.int(self.leaving[i]),
+                inward: n.mask(self.inward >> i & 1 == 1),
+            },
+            boxes: BoxRay::new(n, origin, inverse),
+        }
+    }
+}
+
+#[inline(always)]
+fn one_of<T: Copy>(vectors: &[[T; WIDEST]; 3], i: usize) -> [T; 3] {
+    [vectors[0][i], vectors[1][i], vectors[2][i]]
+}
+
+/// One ray, the same in all lanes.
+struct Lone<N: Lanes> {
+    ray: LaneRay<N>,
+    leaving: Leaving<N>,
+    boxes: BoxRay<N>,
+}
+
+impl<N: Lanes> Lone<N> {
+    /// What the balls of a group from place `from` on answer, those that are asked, and their
+    /// numbers; nothing where the ray surely misses all.
+    #[inline(always)]
+    fn ask_balls(
+        &self,
+        n: N,
+        balls: &Balls<N::Scalar>,
+        from: usize,
+        limit: N::Scalar,
+    ) -> Option<(Candidate<N>, N::Mask, N::Int)> {
+        let objects = n.load_int(&balls.objects[from..]);
+        let asked = Asked::new(n, objects, false, &self.leaving, balls.present(n, from));
+        let span = balls.span(n, from, &self.ray, asked.all, n.splat(limit));
+        if !(asked.all & !span.miss).any() {
+            return None;
+        }
+        Some((candidate(n, &span, &asked), asked.all, objects))
+    }
+
+    /// What one object answers, in all lanes.
+    #[inline(never)]
+    fn ask_object(
+        &self,
+        n: N,
+        model: &Model<N::Scalar>,
+        k: u32,
+        limit: N::Scalar,
+    ) -> Option<Candidate<N>> {
+        n.vectorize(
+            #[inline(always)]
+            || {
+                let shape = &model.shapes[k as usize];
+                let kind = shape.kind?;
+                let flat = kind.is_flat();
+                let asked = Asked::new(n, n.int(k), flat, &self.leaving, n.mask(true));
+                let span = shape.span(n, &self.ray, asked.all, n.splat(limit));
+                if !(asked.all & !span.miss).any() {
+                    return None;
+                }
+                Some(candidate(n, &span, &asked))
+            },
+        )
+    }
+}
+
+/// One ray's closest certain hit so far and what could be before it, as in [`Search`].
+struct Closest<T> {
+    low: T,
+    high: T,
+    part: u32,
+    rival: T,
+}
+
+impl<T: Scalar> Closest<T> {
+    /// Counts the lanes of `bits`, whose objects have parts by `part_of`.
+    #[inline(always)]
+    fn take<N: Lanes<Scalar = T>>(
+        &mut self,
+        n: N,
+        candidate: &Candidate<N>,
+        bits: u32,
+        part_of: impl Fn(usize) -> u32,
+    ) {
+        if bits == 0 {
+            return;
+        }
+        let mut ends = [[T::default(); WIDTH]; 2];
+        n.store(candidate.at.low, &mut ends[0]);
+        n.store(candidate.at.high, &mut ends[1]);
+        let certain = candidate.certain.bits();
+        for i in each(bits) {
+            let (low, high) = (ends[0][i % WIDTH], ends[1][i % WIDTH]);
+            let mut loser = low;
+            if certain >> i & 1 == 1 && high < self.high {
+                loser = self.low;
+                (self.low, self.high) = (low, high);
+                self.part = part_of(i);
+            }
+            if loser < self.rival {
+                self.rival = loser;
+            }
+        }
+    }
+}
+
+/// The closest hits of the active rays.
+#[inline(never)]
+pub(super) fn search<L: Lanes>(
+    l: L,
+    model: &Model<L::Scalar>,
+    many: &Many<L::Scalar>,
+    ray: &LaneRay<L>,
+    leaving: &Leaving<L>,
+    active: L::Mask,
+) -> Search<L> {
+    l.vectorize(
+        #[inline(always)]
+        || {
+            let mut search = Search::new(l);
+            for &k in &many.broad {
+                search.ask_alone(l, model, k, ray, leaving, active);
+            }
+            let inverse = reciprocal(l, ray.direction);
+            let met = many.boxes.meets(l, ray.origin, inverse, search.best.high);
+            let met = (active & met).bits();
+            if met == 0 {
+                return search;
+            }
+            let mut low = array(l, search.best.low);
+            let mut high = array(l, search.best.high);
+            let mut part = int_array(l, search.part);
+            let mut rival = array(l, search.rival);
+            let n = l.narrow();
+            let rays = Rays::new(l, ray, inverse, leaving);
+            let mut descent = Descent::new();
+            for i in each(met) {
+                let mut closest = Closest {
+                    low: low[i],
+                    high: high[i],
+                    part: part[i],
+                    rival: rival[i],
+                };
+                descent.restart();
+                closest_along(n, model, many, &rays.lone(n, i), &mut descent, &mut closest);
+                low[i] = closest.low;
+                high[i] = closest.high;
+                part[i] = closest.part;
+                rival[i] = closest.rival;
+            }
+            Search {
+                best: Enclosure {
+                    low: l.load(&low),
+                    high: l.load(&high),
+                },
+                part: l.load_int(&part),
+                rival: l.load(&rival),
+            }
+        },
+    )
+}
+
+/// Asks what one ray meets the boxes of, nearest boxes first.
+#[inline(always)]
+fn closest_along<N: Lanes>(
+    n: N,
+    model: &Model<N::Scalar>,
+    many: &Many<N::Scalar>,
+    lone: &Lone<N>,
+    descent: &mut Descent<N::Scalar>,
+    closest: &mut Closest<N::Scalar>,
+) {
+    let first = |object: u32| model.parts.first[object as usize];
+    while let Some(child) = many.boxes.next(n, descent, &lone.boxes, closest.high) {
+        match child {
+            Child::Balls(balls) => {
+                for from in (0..balls.count).step_by(N::COUNT) {
+                    let asked = lone.ask_balls(n, balls, from, closest.high);
+                    let Some((candidate, asked, _)) = asked else {
+                        continue;
+                    };
+                    let bits = (candidate.possible & asked).bits();
+                    closest.take(n, &candidate, bits, |i| {
+                        first(balls.objects[(from + i) % WIDTH])
+                    });
+                }
+            }
+            Child::Object(k) => {
+                if let Some(candidate) = lone.ask_object(n, model, k, closest.high) {
+                    let bits = candidate.possible.bits() & 1;
+                    closest.take(n, &candidate, bits, |_| {
+                        first(k) + n.int_lane(candidate.part, 0)
+                    });
+                }
+            }
+        }
+    }
+}
+
+/// Which of the active shadow rays are blocked.
+#[inline(never)]
+pub(super) fn blocks<L: Lanes>(
+    l: L,
+    model: &Model<L::Scalar>,
+    many: &Many<L::Scalar>,
+    shadow: &Shadow<L>,
+    leaving: &Leaving<L>,
+    active: L::Mask,
+) -> Blocks<L> {
+    l.vectorize(
+        #[inline(always)]
+        || {
+            let mut blocks = Blocks::new(l);
+            for &k in many.broad.iter().filter(|k| many.hides[**k as usize]) {
+                blocks.ask_alone(l, model, k, shadow, leaving, active);
+            }
+            let inverse = reciprocal(l, shadow.ray.direction);
+            let met = many
+                .boxes
+                .meets(l, shadow.ray.origin, inverse, shadow.limit);
+            let met = (active & met & !blocks.blocked).bits();
+            if met == 0 {
+                return blocks;
+            }
+            let n = l.narrow();
+            let rays = Rays::new(l, &shadow.ray, inverse, leaving);
+            let limits = array(l, shadow.limit);
+            let excepted = int_array(l, shadow.except);
+            let mut descent = Descent::new();
+            let (mut blocked, mut doubtful) = (0, 0);
+            for i in each(met) {
+                descent.restart();
+                let lone = rays.lone(n, i);
+                let end = End {
+                    limit: limits[i],
+                    except: n.int(excepted[i]),
+                };
+                let found = block_along(n, model, many, &lone, &end, &mut descent);
+                blocked |= u32::from(found == Block::Sure) << i;
+                doubtful |= u32::from(found == Block::Doubtful) << i;
+            }
+            blocks.blocked = blocks.blocked | l.mask_from_bits(blocked);
+            blocks.doubtful = blocks.doubtful | l.mask_from_bits(doubtful);
+            blocks
+        },
+    )
+}
+
+/// Where a shadow ray ends.
+struct End<N: Lanes> {
+    limit: N::Scalar,
+    except: N::Int,
+}
+
+/// What is before a shadow ray's end.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Block {
+    Nothing,
+    Doubtful,
+    Sure,
+}
+
+impl<N: Lanes> End<N> {
+    /// What a candidate of the given objects is, for the lanes in `asked`.
+    #[inline(always)]
+    fn judge(&self, n: N, c: &Candidate<N>, asked: N::Mask, objects: N::Int) -> Block {
+        let limit = n.splat(self.limit);
+        let counted = c.possible & asked & !self.except.same(objects);
+        if (c.certain & c.at.high.lt(limit) & counted).any() {
+            Block::Sure
+        } else if (c.at.low.lt(limit) & counted).any() {
+            Block::Doubtful
+        } else {
+            Block::Nothing
+        }
+    }
+}
+
+/// Asks what one shadow ray meets the boxes of, until it is surely blocked.
+#[inline(always)]
+fn block_along<N: Lanes>(
+    n: N,
+    model: &Model<N::Scalar>,
+    many: &Many<N::Scalar>,
+    lone: &Lone<N>,
+    end: &End<N>,
+    descent: &mut Descent<N::Scalar>,
+) -> Block {
+    let mut all = Block::Nothing;
+    while let Some(child) = many.boxes.next(n, descent, &lone.boxes, end.limit) {
+        let found = match child {
+            Child::Balls(balls) => {
+                let mut found = Block::Nothing;
+                for from in (0..balls.count).step_by(N::COUNT) {
+                    if let Some((c, asked, objects)) = lone.ask_balls(n, balls, from, end.limit) {
+                        found = found.max(end.judge(n, &c, asked, objects));
+                    }
+                }
+                found
+            }
+            Child::Object(k) if many.hides[k as usize] => {
+                match lone.ask_object(n, model, k, end.limit) {
+                    Some(c) => end.judge(n, &c, n.mask(true), n.int(k)),
+                    None => Block::Nothing,
+                }
+            }
+            Child::Object(_) => Block::Nothing,
+        };
+        if found == Block::Sure {
+            return Block::Sure;
+        }
+        all = all.max(found);
+    }
+    all
+}
+
+/// The objects that one lane's ray could meet before `limit`; `None` for all.
+#[cold]
+pub(super) fn candidates<L: Lanes>(
+    l: L,
+    model: &Model<L::Scalar>,
+    ray: &LaneRay<L>,
+    i: usize,
+    limit: L::Scalar,
+) -> Option<Vec<u32>> {
+    let many = model.hierarchy.as_ref()?;
+    let n = l.narrow();
+    let one = L::Scalar::from_f64(1.0);
+    let vector = |v: Vec3<L::Real>| [l.lane(v.x, i), l.lane(v.y, i), l.lane(v.z, i)];
+    let boxes = BoxRay::new(
+        n,
+        vector(ray.origin),
+        vector(ray.direction).map(|d| one / d),
+    );
+    let mut descent = Descent::new();
+    descent.restart();
+    let mut objects = many.broad.clone();
+    while let Some(child) = many.boxes.next(n, &mut descent, &boxes, limit) {
+        match child {
+            Child::Balls(balls) => objects.extend(&balls.objects[..balls.count]),
+            Child::Object(k) => objects.push(k),
+        }
+    }
+    Some(objects)
+}

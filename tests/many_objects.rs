@@ -1,0 +1,266 @@
+//! Many objects: the hierarchy gives the hits of the list, whoever shares the packet.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "the tests' own scenes are right, and what they hold is known"
+)]
+
+use std::path::Path;
+
+use etalon::integrate::intersect::{Leaving, NOTHING, Rungs, Shadow, nearest, occluded};
+use etalon::integrate::model::{Many, Model};
+use etalon::math::lanes::{Lanes, Mask, Scalar, WIDEST};
+use etalon::math::twice::Twice;
+use etalon::math::vec3::Vec3;
+use etalon::plan::build::{LARGEST_LIST, build};
+use etalon::plan::choose::choose;
+use etalon::plan::extent::{about_camera, bounds};
+use etalon::scene::{self, Overrides, Scene};
+use etalon::shape::hierarchy::Item;
+use etalon::shape::lanes::LaneRay;
+use glam::DVec3;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+use crate::lanes_support::{Job, PRECISIONS, on_each};
+use crate::shape_ladder::cubed;
+
+const HEAD: &str = r#"
+[camera]
+from = [0, 0, 6]
+to = [0, 0, 0]
+fov = 40
+
+[image]
+size = [8, 8]
+spp = 1
+
+[materials]
+white = { diffuse = 0.75 }
+lamp = { emit = 1 }
+
+[[object]]
+shape = { plane = {} }
+material = "white"
+transform = [{ rotate_x = -90 }, { translate = [0, -2, 0] }]
+
+[[object]]
+shape = { rectangle = { size = [1, 1] } }
+material = "lamp"
+transform = [{ rotate_x = 90 }, { translate = [0, 2, 0] }]
+"#;
+
+/// A cloud of balls, among them large, touching and overlapping ones, and `others` of other shapes.
+fn cloud(balls: usize, others: usize) -> Scene {
+    let mut rng = Pcg64Mcg::seed_from_u64(3);
+    let mut text = String::from(HEAD);
+    let mut object = |shape: String, placed: String| {
+        text += &format!(
+            "\n[[object]]\nshape = {{ {shape} }}\nmaterial = \"white\"\ntransform = [{placed}]\n"
+        );
+    };
+    for i in 0..balls {
+        // On a grid of touching balls, every third one beside it.
+        let grid = [i % 7, i / 7 % 7, i / 49].map(|k| (k as f64 - 3.0) / 2.0);
+        let [x, y, z] = if i % 3 == 0 {
+            (2.0 * cubed(&mut rng)).to_array()
+        } else {
+            grid
+        };
+        let radius = if i % 50 == 49 { 0.75 } else { 0.25 };
+        object(
+            format!("sphere = {{ radius = {radius} }}"),
+            format!("{{ translate = [{x}, {y}, {z}] }}"),
+        );
+    }
+    for i in 0..others {
+        let shape = [
+            "cube = { side = 0.3 }",
+            "cylinder = { radius = 0.2, height = 0.4 }",
+            "disk = { radius = 0.3 }",
+            "rectangle = { size = [0.4, 0.3] }",
+            "sphere = { radius = 0.2 }",
+        ][i % 5];
+        let [x, y, z] = (2.0 * cubed(&mut rng)).to_array();
+        let angle = [0.0, 90.0, 360.0 * rng.random::<f64>()][i % 3];
+        object(
+            shape.into(),
+            format!(
+                "{{ rotate_x = {angle} }}, {{ scale = [1, 1, 1.5] }}, {{ translate = [{x}, {y}, {z}] }}"
+            ),
+        );
+    }
+    scene::parse("cloud", &text, Path::new("."), &Overrides::default()).unwrap()
+}
+
+fn items(scene: &Scene) -> Vec<Item> {
+    let with_bounds = |(k, object): (usize, &scene::Named<scene::Object>)| {
+        let bounds = bounds(&object.value.shape, &about_camera(scene, &object.value))?;
+        Some((k as u32, bounds))
+    };
+    scene
+        .objects
+        .iter()
+        .enumerate()
+        .filter_map(with_bounds)
+        .collect()
+}
+
+/// How the objects are looked through.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Way {
+    List,
+    Hierarchy,
+    /// With the last object forgotten.
+    Broken,
+    /// By packets of twice the width.
+    Wide,
+}
+
+/// One ray's answers: t, part, and whether a shadow ray of that direction is blocked.
+type Answer = (f64, u32, bool);
+
+struct Questions<'a> {
+    scene: &'a Scene,
+    way: Way,
+    rays: usize,
+}
+
+impl Job for Questions<'_> {
+    type Output = Vec<Answer>;
+    fn run<L: Lanes>(&self, l: L) -> Vec<Answer> {
+        let choices = choose(self.scene, false).unwrap();
+        let (mut model, _) = build::<L::Scalar>(self.scene, &choices).unwrap();
+        let mut items = items(self.scene);
+        if self.way == Way::Broken {
+            items.pop();
+        }
+        let many = || Many::new(&items, vec![0], &model.shapes, &model.occluders);
+        model.hierarchy = (self.way != Way::List).then(many);
+        let rays = rays(self.rays);
+        if self.way == Way::Wide {
+            answers(Twice(l), &model, &rays)
+        } else {
+            answers(l, &model, &rays)
+        }
+    }
+}
+
+/// Origins, directions: anything, and along the axes through the grid of balls.
+fn rays(count: usize) -> Vec<[DVec3; 2]> {
+    let mut rng = Pcg64Mcg::seed_from_u64(5);
+    let any = |rng: &mut Pcg64Mcg| {
+        let from = 4.0 * cubed(rng);
+        [from, (2.0 * cubed(rng) - from).normalize()]
+    };
+    (0..count)
+        .map(|i| match i % 8 {
+            0 => {
+                let axis = rng.random_range(0..3);
+                let mut from = (4.0 * cubed(&mut rng)).round() / 4.0;
+                from[axis] = 4.0;
+                [from, -DVec3::AXES[axis]]
+            }
+            _ => any(&mut rng),
+        })
+        .collect()
+}
+
+/// The answers for all rays, and then for as many that leave the objects hit, inward or outward.
+fn answers<L: Lanes>(l: L, model: &Model<L::Scalar>, rays: &[[DVec3; 2]]) -> Vec<Answer> {
+    let mut answers = [Vec::new(), Vec::new()];
+    for packet in rays.chunks(L::COUNT) {
+        let mut leaving = [NOTHING; WIDEST];
+        let mut rays = packet.to_vec();
+        for (answers, inward) in answers.iter_mut().zip([0, 0x5555_5555]) {
+            let found = ask(l, model, &rays, &leaving, inward);
+            for (i, (t, part, _)) in found.iter().enumerate() {
+                leaving[i] = model.parts.object(*part).unwrap_or(NOTHING);
+                if t.is_finite() {
+                    let [from, direction] = rays[i];
+                    rays[i] = [from + *t * direction, turned(direction)];
+                }
+            }
+            answers.extend(found);
+        }
+    }
+    answers.concat()
+}
+
+fn turned(v: DVec3) -> DVec3 {
+    DVec3::new(v.y, v.z, v.x)
+}
+
+fn ask<L: Lanes>(
+    l: L,
+    model: &Model<L::Scalar>,
+    rays: &[[DVec3; 2]],
+    leaving: &[u32; WIDEST],
+    inward: u32,
+) -> Vec<Answer> {
+    let column = |which: usize, axis: usize| {
+        let mut column = [L::Scalar::from_f64(1.0); WIDEST];
+        for (place, ray) in column.iter_mut().zip(rays) {
+            *place = L::Scalar::from_f64(ray[which][axis]);
+        }
+        l.load(&column)
+    };
+    let vector = |which| Vec3::new(column(which, 0), column(which, 1), column(which, 2));
+    let ray = LaneRay::new(l, vector(0), vector(1));
+    let leaving = Leaving {
+        object: l.load_int(leaving),
+        inward: l.mask_from_bits(inward & (u32::MAX >> (WIDEST - L::COUNT))),
+    };
+    let active = l.mask_from_bits(u32::MAX >> (WIDEST - rays.len()));
+    let mut rungs = Rungs::default();
+    let found = nearest(l, model, &ray, &leaving, active, &mut rungs);
+    let shadow = Shadow {
+        ray,
+        limit: l.real(2.5),
+        except: l.int(1),
+    };
+    let blocked = occluded(l, model, &shadow, &leaving, active, &mut rungs).bits();
+    (0..rays.len())
+        .map(|i| {
+            (
+                l.lane(found.t, i).to_f64(),
+                l.int_lane(found.part, i),
+                blocked >> i & 1 == 1,
+            )
+        })
+        .collect()
+}
+
+/// Both rungs are the same arithmetic on the same rays by either way. Only what stands for a rival
+/// could differ: an object whose box lies beyond a hit that its enclosure reaches before. No ray
+/// here meets one, so that all bits agree.
+#[test]
+fn hierarchy_and_list_see_the_same() {
+    for (balls, others) in [(300, 0), (40, 60), (0, 40)] {
+        let scene = cloud(balls, others);
+        assert!(scene.objects.len() > LARGEST_LIST);
+        for precision in PRECISIONS {
+            let rays = 2000;
+            let ask = |way| {
+                let questions = Questions {
+                    scene: &scene,
+                    way,
+                    rays,
+                };
+                on_each(precision, &questions)
+            };
+            let list = ask(Way::List).swap_remove(0).1;
+            assert!(list.iter().filter(|answer| answer.1 != NOTHING).count() > rays);
+            assert!(list.iter().filter(|answer| answer.2).count() > rays / 4);
+            for way in [Way::Hierarchy, Way::Wide] {
+                for (name, answers) in ask(way) {
+                    for (i, (a, b)) in list.iter().zip(&answers).enumerate() {
+                        assert_eq!(a, b, "{way:?} {precision:?} {name} ray {i}");
+                    }
+                    assert_eq!(list.len(), answers.len());
+                }
+            }
+            assert_ne!(ask(Way::Broken).swap_remove(0).1, list);
+        }
+    }
+}
