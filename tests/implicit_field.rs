@@ -1,14 +1,21 @@
 //! Fields of implicit surfaces in f64 and in lanes: values, gradients, and normals where the
 //! gradient vanishes.
 
+use std::sync::Arc;
+
+use etalon::math::affine::Affine;
 use etalon::math::lanes::Lanes;
 use etalon::math::vec3::Vec3;
+use etalon::scene::{FinderChoice, Implicit};
 use etalon::shape::implicit::bounded;
+use etalon::shape::implicit::certified::Workspace;
 use etalon::shape::implicit::evaluate::{Field, nearest};
 use etalon::shape::implicit::expression::{Expression, parse};
 use etalon::shape::implicit::named::{self, SURFACES};
 use etalon::shape::implicit::normal::outward;
+use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
 use etalon::shape::lanes::field::{LaneField, Scratch};
+use etalon::shape::{Query, Ray};
 use glam::DVec3;
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -299,4 +306,49 @@ fn squares_have_normals_that_face_the_ray() {
     assert!((outside - DVec3::X).length() < 1e-3, "{outside}");
     let inside = outward(&field, DVec3::X, DVec3::new(1.0, 0.25, 0.0), 4.0);
     assert!((inside + DVec3::X).length() < 1e-3, "{inside}");
+}
+
+/// The caps of a closed surface belong to it, on whichever side a ray comes from; an open one has
+/// none.
+#[test]
+fn closed_surfaces_have_caps() {
+    let inside = [-DVec3::ONE, DVec3::ONE];
+    let open = expression("x^2 + y^2 - z^2/2 - 1/5");
+    let first = |field: Expression, inside: [DVec3; 2], origin: DVec3| {
+        let implicit = Implicit {
+            name: None,
+            field: Arc::new(field),
+            inside,
+            closed: false,
+            finder: FinderChoice::Auto,
+            steps: 256,
+        };
+        let placed = PlacedImplicit::new(&implicit, &Affine::IDENTITY).expect("a regular matrix");
+        let query = Query {
+            ray: Ray {
+                origin,
+                direction: DVec3::NEG_Z,
+            },
+            t_min: 0.0,
+            t_max: f64::INFINITY,
+        };
+        let (mut workspace, mut tally) = (Workspace::default(), ImplicitTally::default());
+        match placed.first_hit(&query, &mut workspace, &mut tally) {
+            ImplicitAnswer::Found(hit) => Some((hit.t, hit.normal)),
+            ImplicitAnswer::Absent => None,
+            ImplicitAnswer::Undecided => panic!("undecided"),
+        }
+    };
+    let origin = DVec3::new(0.1, 0.2, 5.0);
+    assert_eq!(first(open.clone(), inside, origin), None);
+    let capped = open.capped(&inside).expect("finite corners");
+    let room = [inside[0] * 1.125, inside[1] * 1.125];
+    for (z, t, up) in [(5.0, 4.0, 1.0), (0.5, 1.5, -1.0)] {
+        let origin = DVec3::new(0.1, 0.2, z);
+        let Some((found, normal)) = first(capped.clone(), room, origin) else {
+            panic!("the cap is missing");
+        };
+        assert!((found - t).abs() < 1e-14, "{found}");
+        assert_eq!(normal, Some(DVec3::Z * up));
+    }
 }

@@ -14,6 +14,7 @@ use crate::shape::implicit::expression::{
     self, Expression, ExpressionError, Parameter, check_name, parse_constant, rational,
 };
 use crate::shape::implicit::named::{self, NamedSurface, SURFACES};
+use crate::shape::implicit::over_box::over_box;
 
 /// The finder of objects that name none, and where it is written.
 pub(super) type DefaultFinder = (FinderChoice, Option<Place>);
@@ -68,11 +69,18 @@ pub(super) fn read(report: &Report, node: &Node, default: &DefaultFinder) -> Opt
         report.count(what, node, 1..=MOST_STEPS)
     });
     let (finder, chosen_at) = finder?;
+    let (mut field, mut inside, closed) = (field?, inside?, closed?);
+    if closed && let Some(capped) = field.capped(&inside) {
+        field = capped;
+        // Some room about the caps, which must not lie where the surface is cut off.
+        let room = (inside[1] - inside[0]) / 16.0;
+        inside = [inside[0] - room, inside[1] + room];
+    }
     let implicit = Implicit {
         name: surface.map(|surface| surface.name),
-        field: Arc::new(field?),
-        inside: inside?,
-        closed: closed?,
+        field: Arc::new(field),
+        inside,
+        closed,
         finder,
         steps: steps?,
     };
@@ -87,8 +95,22 @@ fn check(
     written: &Node,
     chosen_at: Option<Place>,
 ) -> Option<()> {
-    if implicit.finder != FinderChoice::Polynomial || implicit.field.polynomial.is_some() {
+    let polynomial = implicit.field.polynomial.is_some();
+    if !polynomial && over_box(&implicit.field.tape, &implicit.inside).undefined {
+        let message = "object.shape.implicit is defined nowhere in its box";
+        let expected = "a field that has values in \"inside\": no root of a negative number, \
+                        logarithm of zero or division by zero everywhere";
+        return report.fail(Complaint::new(written.place, message.to_owned()).expected(expected));
+    }
+    if implicit.finder != FinderChoice::Polynomial || polynomial {
         return Some(());
+    }
+    if implicit.closed {
+        let message =
+            "the finder \"polynomial\" for a closed surface, whose caps are no polynomial";
+        let expected = "\"auto\", \"interval\", \"sphere-trace\" or \"sign-change\"";
+        let place = chosen_at.unwrap_or(written.place);
+        return report.fail(Complaint::new(place, message.to_owned()).expected(expected));
     }
     // The finder may be asked for far from the field.
     let text = report.text("object.shape.implicit", written)?;

@@ -21,13 +21,14 @@ mod token;
 
 use std::ops::Range;
 
+use glam::DVec3;
 use num_rational::BigRational;
 
 pub use error::{ExpressionError, Problem};
 pub use token::rational;
 
 use super::polynomial::Polynomial;
-use super::tape::{Operation, Tape};
+use super::tape::{Binary, Operation, Tape};
 use build::Value;
 use parser::Parser;
 
@@ -83,6 +84,33 @@ pub struct Expression {
     pub spans: Vec<Range<usize>>,
     /// The same field as a polynomial, if it is one of moderate size.
     pub polynomial: Option<Polynomial>,
+}
+
+impl Expression {
+    /// The solid where the field is negative *and* the point is in the box: the larger of the field and
+    /// of the six half-spaces' own fields, so that it is closed by the box's faces. `None` for corners
+    /// that are not finite.
+    pub fn capped(&self, inside: &[DVec3; 2]) -> Option<Self> {
+        let mut tape = self.tape.clone();
+        let mut field = tape.operations().len() - 1;
+        for axis in 0..3 {
+            let coordinate = tape.push(Operation::Coordinate(axis));
+            let [low, high] = inside.map(|corner| BigRational::from_float(corner[axis]));
+            let (low, high) = (tape.push_constant(low?), tape.push_constant(high?));
+            let below = tape.push(Operation::Binary(Binary::Difference, low, coordinate));
+            let above = tape.push(Operation::Binary(Binary::Difference, coordinate, high));
+            field = tape.push(Operation::Binary(Binary::Maximum, field, below));
+            field = tape.push(Operation::Binary(Binary::Maximum, field, above));
+        }
+        let whole = self.spans.last().cloned().unwrap_or_default();
+        let mut spans = self.spans.clone();
+        spans.resize(tape.operations().len(), whole);
+        Some(Self {
+            tape,
+            spans,
+            polynomial: None,
+        })
+    }
 }
 
 /// Reads a field.
