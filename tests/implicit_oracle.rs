@@ -224,27 +224,33 @@ fn second_hits_of_rays_that_leave() {
     let table = rows(include_str!("data/implicit.csv"));
     let first: HashMap<&str, &Row> = table.iter().map(|row| (row["id"].as_str(), row)).collect();
     let surfaces = surfaces();
+    let placed = placed(FinderChoice::Auto);
     let mut faults = Vec::new();
     let level = Level::new();
     let wish = Wish {
         sharp: false,
         exact: true,
     };
+    let certified: BTreeMap<&String, Certified> = surfaces
+        .iter()
+        .map(|(name, surface)| {
+            let Implicit { field, inside, .. } = &surface.implicit;
+            let certified = Certified::new(&field.tape, *inside, &Affine::IDENTITY);
+            (name, certified.unwrap().unwrap())
+        })
+        .collect();
     for row in &rows(include_str!("data/bounce.csv")) {
         let ray = first[row["id"].as_str()];
-        let implicit = &surfaces[&ray["shape"]].implicit;
-        let placed = PlacedImplicit::new(implicit, &Affine::IDENTITY).unwrap();
-        let hit = placed.first_hit(&query(ray), &mut workspace, &mut tally);
+        let (surface, _) = &placed[&ray["shape"]];
+        let hit = surface.first_hit(&query(ray), &mut workspace, &mut tally);
         let ImplicitAnswer::Found(hit) = hit else {
             panic!("{}: no first hit", row["id"]);
         };
-        let field = &implicit.field.tape;
-        let certified = Certified::new(field, implicit.inside, &Affine::IDENTITY);
         let mut packet = Packet::default();
         let direction = vector(row, ["d2x", "d2y", "d2z"]);
         packet.set(0, hit.point, direction, [0.0, f64::INFINITY]);
         packet.leaving = 1;
-        let certified = certified.unwrap().unwrap();
+        let certified = &certified[&ray["shape"]];
         let answers = certified.first_hits(level, &packet, wish, &mut workspace);
         let right = if answers.found & 1 == 1 {
             row["hit2"] == "1" && (answers.t[0] - number(row, "t2")).abs() < 1e-5

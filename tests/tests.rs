@@ -7,6 +7,7 @@ mod fresnel;
 mod implicit_expression;
 mod implicit_field;
 mod implicit_interval;
+mod implicit_invented;
 mod implicit_oracle;
 mod lane_functions;
 mod lane_shapes;

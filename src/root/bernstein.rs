@@ -36,6 +36,8 @@ pub struct Problem<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize> {
     pub start_error: L::Real,
     /// How many times 1 is known to be a root, in all lanes: that many last coefficients are zero.
     pub roots_at_end: usize,
+    /// Part of the solver's own rounding that is accounted for: 1.
+    pub accounted: f64,
     /// Those that are asked for.
     pub active: L::Mask,
 }
@@ -77,6 +79,12 @@ const fn binomial(n: usize, i: usize) -> f64 {
         j += 1;
     }
     c as f64
+}
+
+/// Error that one split adds to coefficients below 1. A level rounds a difference and a product
+/// below 2 and a sum below 1: 7U with the sum of magnitudes that double-double sums go by.
+pub const fn split_error(degree: usize, unit: f64) -> f64 {
+    8.0 * degree as f64 * unit
 }
 
 /// Reads the signs. In the lanes of `known` the first coefficient may have any.
@@ -200,10 +208,9 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
         *c = c.times_real(sign);
         largest = largest.max(c.head().abs());
     }
-    // With the largest magnitude 1, a level of a split rounds a difference and a product below 2
-    // and a sum below 1: 7U with the sum of magnitudes that double-double sums go by. One split's
-    // worth pays for `value`, too.
-    let per_split = largest * l.real(8.0 * (M - 1) as f64 * W::UNIT);
+    // One split's worth pays for `value`, too.
+    let own = split_error(M - 1, W::UNIT) * problem.accounted;
+    let per_split = largest * l.real(own);
     let mut error = problem.error + per_split;
     let mut segment = Segment {
         coefficients: rest,

@@ -284,6 +284,7 @@ fn square<L: DoubleLanes, W: Word<L>>(
 struct Question<L: DoubleLanes> {
     error: L::Real,
     start_error: L::Real,
+    accounted: f64,
     roots_at_end: usize,
     on_root: L::Mask,
     active: L::Mask,
@@ -308,6 +309,7 @@ impl<L: DoubleLanes> Question<L> {
                         on_root: self.on_root,
                         start_error: self.start_error,
                         roots_at_end: self.roots_at_end,
+                        accounted: self.accounted,
                         active: self.active,
                     },
                 )
@@ -360,12 +362,13 @@ impl<L: DoubleLanes> Combined<L> {
         let error = clipped
             .shift
             .mul_add(l.real(bounds.change), l.real(bounds.error));
-        // The start of a ray that leaves the surface is a root of it, rounded: the root was found
-        // up to twice the bound, its coordinates are off by some roundings of the world's.
+        // The start of a ray that leaves the surface is a root of it as far as f64 could tell, and
+        // its coordinates are off by some roundings of the world's.
         let rounding = clipped.start_shift * l.real(packet.roundoff);
         let question = Question {
             error,
-            start_error: rounding.mul_add(l.real(bounds.change), error + error),
+            start_error: rounding.mul_add(l.real(bounds.change), error + l.real(factor.root_error)),
+            accounted: factor.accounted,
             roots_at_end: packet.roots_at_end,
             on_root: l.mask_from_bits(packet.leaving),
             active: self.open & !self.undecided,

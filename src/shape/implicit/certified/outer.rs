@@ -16,7 +16,7 @@ use super::super::tape::{Algebra, Binary, Tape, Unary};
 /// Halvings of the clip box: faces are found to a 64th of it.
 const LEVELS: u32 = 6;
 /// Most cells looked at for a face; beyond, the outermost that is left is taken.
-const MOST_CELLS: usize = 1 << 14;
+const MOST_CELLS: usize = 1 << 12;
 
 /// Ends of an interval.
 type Interval = [f64; 2];

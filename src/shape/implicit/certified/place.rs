@@ -10,6 +10,7 @@ use crate::math::affine::Affine;
 use crate::math::double_double::DoubleDouble;
 use crate::math::exact::Exact;
 use crate::math::number::{Number, dot};
+use crate::root::bernstein::split_error;
 use crate::shape::SingularMatrix;
 use crate::shape::ladder::Ladder;
 
@@ -39,6 +40,10 @@ pub(super) struct FactorField {
     pub reciprocals: Vec<[f64; 2]>,
     /// By tier.
     pub bounds: [FieldBounds; 2],
+    /// Bound of the value at a root as f64 finds it.
+    pub root_error: f64,
+    /// Part of the solver's rounding that is accounted for: 1.
+    pub accounted: f64,
 }
 
 /// The map from world to object in one arithmetic.
@@ -153,12 +158,11 @@ impl Certified {
     /// The same with the bounds of rounding errors left out: to show that they are needed.
     #[must_use]
     pub fn without_bounds(mut self) -> Self {
-        for bounds in self
-            .factors
-            .iter_mut()
-            .flat_map(|factor| &mut factor.bounds)
-        {
-            (bounds.error, bounds.change) = (0.0, 0.0);
+        for factor in &mut self.factors {
+            factor.accounted = 0.0;
+            for bounds in &mut factor.bounds {
+                (bounds.error, bounds.change) = (0.0, 0.0);
+            }
         }
         self
     }
@@ -178,9 +182,15 @@ impl FactorField {
             let high = 1.0 / b;
             [high, (-b).mul_add(high, 1.0) / b]
         };
+        let by_tier = [PLAIN, PAIR].map(|rounding| bounds(&program, reach, rounding));
+        // Twice the bound, as the estimate is of the same quality as the signs around it, and as many
+        // splits as hardly any root takes.
+        let splits = 16.0 * split_error(degree, PLAIN.unit) * by_tier[0].size;
         Self {
+            root_error: 2.0 * (by_tier[0].error + splits),
+            accounted: 1.0,
             reciprocals: binomials.iter().map(reciprocal).collect(),
-            bounds: [PLAIN, PAIR].map(|rounding| bounds(&program, reach, rounding)),
+            bounds: by_tier,
             program,
             power,
         }
