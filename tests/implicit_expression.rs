@@ -604,16 +604,20 @@ fn scene_files_name_surfaces_or_write_them() {
     );
 
     let shape = r#"shape = { implicit = "a*x^2 + b*y - c", inside = [[0, 0, 0], [1, 2, 3]],
-        parameters = { a = 0.1, b = "a*9/8", c = 1_0.5e0 }, closed = true }"#;
+        parameters = { a = 0.1, b = "a*9/8", c = 1_0.5e0 } }"#;
     let (name, field) = read(shape, None).expect("a field");
     assert_eq!(
         (name.as_str(), field.name, field.closed),
-        ("implicit #0", None, true)
+        ("implicit #0", None, false)
     );
     let wanted = parse("x^2/10 + 9/80*y - 21/2", &[])
         .expect("a field")
         .polynomial;
     assert_eq!(field.field.polynomial, wanted);
+    // Caps make it the largest of several fields.
+    let closed = shape.replace("} }", "}, closed = true }");
+    let (_, field) = read(&closed, None).expect("a field");
+    assert!(field.closed && field.field.polynomial.is_none());
 }
 
 #[test]

@@ -22,6 +22,7 @@ pub struct SteppingFinder {
     inside: [DVec3; 2],
     steps: u32,
     ladder: Ladder,
+    to_world: Affine,
 }
 
 /// Where a ray meets an implicit surface, as far as the baseline finder can tell.
@@ -60,6 +61,7 @@ impl SteppingFinder {
             inside: implicit.inside,
             steps: implicit.steps,
             ladder: Ladder::new(to_world)?,
+            to_world: *to_world,
         })
     }
 
@@ -86,6 +88,27 @@ impl SteppingFinder {
         let ray = ScaledRay::new(ray);
         let line = self.local(&ray);
         self.normal(line.at(t * power_of_two(ray.exponent())), line.direction)
+    }
+
+    /// The point, in the world, of a hit at t. From a far origin o + t d is off by the rounding of its
+    /// large terms, so it is moved back onto the surface by a Newton step along the gradient; where
+    /// the gradient says nothing the point stays where it is.
+    pub fn point_at(&self, ray: &Ray, t: f64) -> DVec3 {
+        let plain = ray.origin + ray.direction * t;
+        let scaled = ScaledRay::new(ray);
+        let line = self.local(&scaled);
+        let scaled_t = t * power_of_two(scaled.exponent());
+        let local = line.at(scaled_t);
+        let gradient = self.field.gradient(local);
+        let step = gradient * (self.field.value(local) / gradient.length_squared());
+        // Eight unit roundoffs of the terms pay for their own rounding, that of t and of the map.
+        let terms = line.origin.abs() + (line.direction * scaled_t).abs();
+        let blur = 4.0 * f64::EPSILON * terms.max_element();
+        if step.length() <= blur {
+            self.to_world.point(local - step)
+        } else {
+            plain
+        }
     }
 
     /// The ray in object coordinates, rounded once from double-double.

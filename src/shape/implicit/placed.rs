@@ -235,7 +235,7 @@ impl PlacedImplicit {
             let multiplicity = answers.multiplicity[0];
             ImplicitAnswer::Found(ImplicitHit {
                 t,
-                point: query.ray.origin + query.ray.direction * t,
+                point: self.stepping.point_at(&query.ray, t),
                 normal: self.stepping.normal_at(&query.ray, t),
                 enclosure: [answers.low[0], answers.high[0]],
                 multiplicity: (multiplicity > 0).then_some(multiplicity),
