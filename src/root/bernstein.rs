@@ -147,6 +147,10 @@ fn split<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
     at: L::Real,
 ) -> [[W; M]; 2] {
     let (mut before, mut after) = (*rest, *rest);
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "iterators over lanes are not always inlined"
+    )]
     for level in 1..M {
         for i in 0..M - level {
             after[i] = after[i + 1].minus(after[i]).times_real(at).plus(after[i]);

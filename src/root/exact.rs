@@ -217,8 +217,7 @@ impl Chain {
     fn new(polynomial: &Polynomial) -> Self {
         let mut chain = vec![polynomial.clone(), polynomial.derivative()];
         let (mut g, mut h) = (BigInt::one(), BigInt::one());
-        loop {
-            let [.., a, b] = chain.as_slice() else { break };
+        while let [.., a, b] = chain.as_slice() {
             if b.is_zero() {
                 chain.pop();
                 break;

@@ -354,7 +354,7 @@ impl Algebra {
             _ => {
                 let half = self.power(a, n / 2)?;
                 let square = self.product(&half, &half)?;
-                if n % 2 == 0 {
+                if n.is_multiple_of(2) {
                     return Some(square);
                 }
                 self.product(&square, a)

@@ -157,6 +157,10 @@ impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
     fn ends(&self, l: L, clipped: &Clipped<L>) -> [[W; 2]; 3] {
         let (near, far) = (W::real(l, clipped.near), W::real(l, clipped.far));
         let mut ends = [[near; 2]; 3];
+        #[expect(
+            clippy::needless_range_loop,
+            reason = "iterators over lanes are not always inlined"
+        )]
         for i in 0..3 {
             let (o, d) = (self.origin[i], self.direction[i]);
             ends[i] = [d.fused(near, o), d.fused(far, o)];
@@ -259,7 +263,7 @@ fn square<L: DoubleLanes, W: Word<L>>(
 ) {
     for k in 0..=2 * degree {
         let first = k.saturating_sub(degree);
-        let pairs = (k + 1) / 2;
+        let pairs = k.div_ceil(2);
         let half = k / 2;
         if first >= pairs {
             let x = W::load(l, known, at + half);

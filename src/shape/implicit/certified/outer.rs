@@ -53,7 +53,7 @@ fn power(a: &Interval, n: u32) -> Interval {
         return [1.0; 2];
     }
     let (low, high) = (magnitude(a[0].abs()), magnitude(a[1].abs()));
-    if n % 2 == 0 {
+    if n.is_multiple_of(2) {
         if a[0] <= 0.0 && a[1] >= 0.0 {
             return [0.0, low[1].max(high[1])];
         }
