@@ -247,7 +247,7 @@ pub fn nearest<L: Lanes>(
             let unsure = active & search.rival.le(high) & search.rival.lt(l.real(f64::INFINITY));
             rungs.undecided += u64::from(unsure.bits().count_ones());
             for i in each(unsure.bits()) {
-                let candidates = candidates(l, model, ray, i, l.lane(high, i));
+                let candidates = candidates(l, model, ray, leaving, i, l.lane(high, i));
                 let found = model.resolver.nearest(
                     candidates.as_deref(),
                     lane_vector(l, ray.origin, i),
@@ -387,7 +387,7 @@ pub fn occluded<L: Lanes>(
                 // The limit is a rounded distance: a few units in its last place are its own noise.
                 let end = l.lane(shadow.limit, i).to_f64() * (1.0 - 8.0 * L::Scalar::ROUNDOFF);
                 let limit = l.lane(shadow.limit, i);
-                let candidates = candidates(l, model, &shadow.ray, i, limit);
+                let candidates = candidates(l, model, &shadow.ray, leaving, i, limit);
                 let hidden = model.resolver.occluded(
                     candidates.as_deref(),
                     lane_vector(l, shadow.ray.origin, i),

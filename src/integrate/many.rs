@@ -388,31 +388,40 @@ fn block_along<N: Lanes>(
     all
 }
 
-/// The objects that one lane's ray could meet before `limit`; `None` for all.
+/// The objects that one lane's ray could meet before `limit` for all that lanes know; `None` for
+/// all.
 #[cold]
 pub(super) fn candidates<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
     ray: &LaneRay<L>,
+    leaving: &Leaving<L>,
     i: usize,
     limit: L::Scalar,
 ) -> Option<Vec<u32>> {
     let many = model.hierarchy.as_ref()?;
     let n = l.narrow();
-    let one = L::Scalar::from_f64(1.0);
-    let vector = |v: Vec3<L::Real>| [l.lane(v.x, i), l.lane(v.y, i), l.lane(v.z, i)];
-    let boxes = BoxRay::new(
-        n,
-        vector(ray.origin),
-        vector(ray.direction).map(|d| one / d),
-    );
+    let lone = Rays::new(l, ray, reciprocal(l, ray.direction), leaving).lone(n, i);
+    let before = |c: &Candidate<L::Narrow>| c.possible & c.at.low.le(n.splat(limit));
     let mut descent = Descent::new();
     descent.restart();
     let mut objects = many.broad.clone();
-    while let Some(child) = many.boxes.next(n, &mut descent, &boxes, limit) {
+    while let Some(child) = many.boxes.next(n, &mut descent, &lone.boxes, limit) {
         match child {
-            Child::Balls(balls) => objects.extend(&balls.objects[..balls.count]),
-            Child::Object(k) => objects.push(k),
+            Child::Balls(balls) => {
+                for from in (0..balls.count).step_by(L::Narrow::COUNT) {
+                    if let Some((c, asked, _)) = lone.ask_balls(n, balls, from, limit) {
+                        let met = each((before(&c) & asked).bits());
+                        objects.extend(met.map(|i| balls.objects[from + i]));
+                    }
+                }
+            }
+            Child::Object(k) => {
+                let answer = lone.ask_object(n, model, k, limit);
+                if answer.is_some_and(|c| before(&c).any()) {
+                    objects.push(k);
+                }
+            }
         }
     }
     Some(objects)

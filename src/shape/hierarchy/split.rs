@@ -30,17 +30,33 @@ impl<'a> Part<'a> {
     }
 }
 
-/// Up to `width` parts, none of them empty: of the parts so far, the one that costs most is split
-/// where the surface-area heuristic finds it cheapest, or, where not `free`, the largest is halved.
+/// How much dearer than the cheapest split one may be that fills the nodes below. Full nodes are up
+/// to half as many as those filled by chance, which are half full on average where they are lowest.
+const FULL: f64 = 1.25;
+
+/// The largest power of `width` below a number: how many objects a full child has.
+fn full_child(width: usize, objects: usize) -> usize {
+    let mut full = 1;
+    while full * width < objects {
+        full *= width;
+    }
+    full
+}
+
+/// Up to `width` parts, none of them empty: of the parts so far that are more than a full child, the
+/// one that costs most is split where the surface-area heuristic finds it cheapest, or, where not
+/// `free`, the largest is halved.
 pub fn split(
     objects: &mut [Item],
     width: usize,
     free: bool,
     is_ball: impl Fn(u32) -> bool + Copy,
 ) -> Vec<&mut [Item]> {
+    let full = full_child(width, objects.len());
     let mut parts = vec![Part::new(objects, is_ball)];
     while parts.len() < width {
-        let weight = |part: &Part<'_>| match (part.one_test, free) {
+        let is_done = |part: &Part<'_>| part.one_test || (free && part.objects.len() <= full);
+        let weight = |part: &Part<'_>| match (is_done(part), free) {
             (true, _) => -1.0,
             (_, true) => part.cost,
             (_, false) => part.objects.len() as f64,
@@ -50,11 +66,11 @@ pub fn split(
         else {
             break;
         };
-        if parts[largest].one_test {
+        if is_done(&parts[largest]) {
             break;
         }
         let Part { objects, .. } = parts.swap_remove(largest);
-        let middle = if free { cheapest(objects) } else { None };
+        let middle = if free { cheapest(objects, full) } else { None };
         let middle = middle.unwrap_or_else(|| halved(objects));
         let (a, b) = objects.split_at_mut(middle);
         parts.extend([Part::new(a, is_ball), Part::new(b, is_ball)]);
@@ -71,8 +87,9 @@ fn centre(item: &Item, axis: usize) -> f64 {
 /// Orders the objects so that the first ones, whose number is returned, are one side of the split
 /// at the edge of a bin with the least expected tests, Σ area · count (Goldsmith and Salmon,
 /// "Automatic Creation of Object Hierarchies for Ray Tracing", 1987; MacDonald and Booth 1990);
-/// `None` where all centres coincide.
-fn cheapest(objects: &mut [Item]) -> Option<usize> {
+/// or at a multiple of `full` along the same axis that is hardly worse; `None` where all centres
+/// coincide.
+fn cheapest(objects: &mut [Item], full: usize) -> Option<usize> {
     let mut best: Option<(f64, usize, f64, f64, usize)> = None;
     for axis in 0..3 {
         let (low, high) = objects
@@ -107,10 +124,46 @@ fn cheapest(objects: &mut [Item]) -> Option<usize> {
             }
         }
     }
-    let (_, axis, low, scale, edge) = best?;
-    // Stable, so that the order depends on the objects alone.
-    objects.sort_by_key(|item| bin(item, axis, low, scale) >= edge);
+    let (cost, axis, low, scale, edge) = best?;
+    sort(objects, axis);
+    if let Some((dear, middle)) = filling(objects, full)
+        && dear <= FULL * cost
+    {
+        return Some(middle);
+    }
+    // The bins are in the order of the centres.
     Some(objects.partition_point(|item| bin(item, axis, low, scale) < edge))
+}
+
+/// The cheapest split of ordered objects at a multiple of `full`, and its expected tests.
+fn filling(objects: &[Item], full: usize) -> Option<(f64, usize)> {
+    let blocks: Vec<Bounds> = objects.chunks(full).map(Bounds::around).collect();
+    let mut above = vec![Bounds::NOTHING; blocks.len() + 1];
+    for (i, block) in blocks.iter().enumerate().rev() {
+        above[i] = above[i + 1].union(*block);
+    }
+    let mut below = Bounds::NOTHING;
+    let mut best: Option<(f64, usize)> = None;
+    for i in 1..blocks.len() {
+        below = below.union(blocks[i - 1]);
+        let middle = i * full;
+        let rest = (objects.len() - middle) as f64;
+        let cost = below
+            .half_area()
+            .mul_add(middle as f64, above[i].half_area() * rest);
+        if best.is_none_or(|(least, _)| cost < least) {
+            best = Some((cost, middle));
+        }
+    }
+    best
+}
+
+/// Orders by centres along an axis, ties by index.
+fn sort(objects: &mut [Item], axis: usize) {
+    objects.sort_unstable_by(|a, b| {
+        let (first, second) = (centre(a, axis), centre(b, axis));
+        first.total_cmp(&second).then_with(|| a.0.cmp(&b.0))
+    });
 }
 
 fn bin(item: &Item, axis: usize, low: f64, scale: f64) -> usize {
@@ -122,9 +175,6 @@ fn halved(objects: &mut [Item]) -> usize {
     let bounds = Bounds::around(&*objects);
     let axis = (bounds.high - bounds.low).max_position();
     let middle = objects.len() / 2;
-    objects.select_nth_unstable_by(middle, |a, b| {
-        let (first, second) = (centre(a, axis), centre(b, axis));
-        first.total_cmp(&second).then_with(|| a.0.cmp(&b.0))
-    });
+    sort(objects, axis);
     middle
 }
