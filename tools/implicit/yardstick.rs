@@ -150,6 +150,7 @@ fn first_root(c: &[f64], end: f64) -> Option<f64> {
         let mut found = 0;
         let mut low = 0.0;
         let mut at_low = c[0];
+        #[expect(clippy::needless_range_loop, reason = "pieces lie between the cuts")]
         for piece in 0..=count {
             let high = if piece < count { cuts[piece] } else { end };
             let at_high = value(c, high);
