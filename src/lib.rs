@@ -14,3 +14,4 @@ pub mod sample;
 pub mod scene;
 pub mod shape;
 pub mod spectrum;
+pub mod study;

@@ -120,7 +120,7 @@ impl Record {
                 return;
             };
             let share = share(answer.near, truth.near.t).max(share(answer.far, truth.far.t));
-            if !(share <= 1.0) {
+            if share > 1.0 || share.is_nan() {
                 self.wrong.push(format!("{share} of the bound: {}", what()));
             } else {
                 self.tightest = self.tightest.max(share);

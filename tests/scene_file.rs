@@ -81,6 +81,7 @@ fn parse_with(text: &str, panel: Option<&str>, set: &[(&str, &str)]) -> Result<S
             .iter()
             .map(|(key, value)| ((*key).to_owned(), (*value).to_owned()))
             .collect(),
+        finder: None,
     };
     scene::parse("test.toml", text, Path::new(""), &options)
 }
@@ -254,6 +255,15 @@ fn every_kind_of_mistake_is_shown_with_its_place() {
         ("{ cube = { side = 2 } }", "{ plane = { «radius» = 1 } }", r#"unknown key "radius" in object.shape.plane"#, None),
         ("{ cube = { side = 2 } }", "{ implicit = \"heart\", inside = «[[1, 0, 0], [1, 1, 1]]» }", "object.shape.inside is a box without inside", None),
         ("{ cube = { side = 2 } }", "{ implicit = \"heart\", steps = «0» }", "object.shape.steps is 0", None),
+        ("{ cube = { side = 2 } }", "{ implicit = \"heart\", inside = «[[-1e308, 0, 0], [1e308, 1, 1]]» }", "object.shape.inside is a box beyond all measure", None),
+        ("{ cube = { side = 2 } }", "{ implicit = \"heart\", inside = [[«nan», 0, 0], [1, 1, 1]] }", "object.shape.inside[0][0] is NaN", None),
+        ("{ cube = { side = 2 } }", "{ implicit = \"heart\", inside = [[0, 0, 0], [1, «inf», 1]] }", "object.shape.inside[1][1] is infinite", None),
+        ("{ cube = { side = 2 } }", "{ implicit = \"heart\", closed = «1» }", "object.shape.closed is an integer", None),
+        ("{ cube = { side = 2 } }", "{ implicit = \"heart\", finder = «\"intervall\"» }", r#"object.shape.finder is "intervall""#, Some("interval")),
+        ("{ cube = { side = 2 } }", "{ implicit = \"torus\", parameters = { «minr» = 0.1 } }", r#""minr" is no parameter of torus"#, Some("minor")),
+        ("{ cube = { side = 2 } }", "{ implicit = \"torus\", parameters = { minor = «nan» } }", "object.shape.parameters.minor is NaN", None),
+        ("{ cube = { side = 2 } }", "{ implicit = \"torus\", parameters = { minor = \"1/«x»\" } }", r#"the coordinate "x" in a constant"#, None),
+        ("{ cube = { side = 2 } }", "{ implicit = \"x^2 - a\", parameters = { «pi» = 0.1 }, inside = [[0, 0, 0], [1, 1, 1]] }", r#"the name "pi" means something already"#, None),
         ("scale = [1, 2, 1]", "scale = [1, «0», 1]", "object.transform[1].scale[1] is 0", None),
         ("scale = [1, 2, 1]", "scale = «0»", "object.transform[1].scale is 0", None),
         ("scale = [1, 2, 1]", "shear = «{}»", "object.transform[1].shear is empty", None),

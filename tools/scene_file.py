@@ -20,7 +20,7 @@ RIVALS = [
     {"ideal", "k"},
     {"sphere", "cube", "cylinder", "disk", "rectangle", "plane", "implicit"},
 ]
-COMPANIONS = {"checkerboard": ["cell"], "implicit": ["inside", "steps"]} | dict.fromkeys(RIVALS[2], ["scale"])
+COMPANIONS = {"checkerboard": ["cell"], "implicit": ["inside", "parameters", "closed", "finder", "steps"]} | dict.fromkeys(RIVALS[2], ["scale"])
 IMAGE_KEYS = {"size", "spp", "max_depth", "sampler", "replicates", "seed", "precision", "wavelengths"}
 
 

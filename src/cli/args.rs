@@ -34,6 +34,8 @@ pub enum Command {
     Trace(Trace),
     /// Follow one camera path of a rendering and print each of its steps.
     Replay(Replay),
+    /// Compare the root finders of implicit surfaces over rays whose first hits are known.
+    Finders(Finders),
 }
 
 /// The scene and what is changed in it.
@@ -45,6 +47,10 @@ pub struct SceneArguments {
     /// Lay this over the scene after the panel: a dotted key and a TOML value or a bare word.
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
+    /// Finder of all implicit surfaces, whatever the scene says: auto, sign-change, sphere-trace,
+    /// interval, polynomial.
+    #[arg(long, value_name = "NAME")]
+    pub finder: Option<String>,
 }
 
 impl SceneArguments {
@@ -57,6 +63,7 @@ impl SceneArguments {
         Overrides {
             panel: panel.map(str::to_owned),
             set: self.set.iter().cloned().chain(options).collect(),
+            finder: self.finder.clone(),
         }
     }
 }
@@ -263,4 +270,40 @@ impl Replay {
         let image = [("seed", self.seed.clone())];
         self.scene.overrides(self.panel.as_deref(), &image)
     }
+}
+
+/// Arguments of `etalon finders`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Without --map, every finder runs over the rays, one after the other on one thread, and \
+finders.csv and finders.svg in the output directory say by class of ray how often it was wrong, how \
+often undecided, and how long a ray took. The rays are CSV with the columns shape, class, ox, oy, \
+oz, dx, dy, dz, tmin, hit, t and gap; the shapes are lines name;half_width;degree;expression below a \
+heading. With --map, a PNG shows for each finder which pixels of one surface it gets wrong (red) or \
+leaves undecided (amber), where auto is the truth.
+
+Exit code 1 if a finder that proves its answers was wrong.
+
+Examples:
+  etalon finders -o charts
+  etalon finders --map heart --size 400")]
+pub struct Finders {
+    /// The CSV file of rays; by default those that come with the program.
+    #[arg(long, value_name = "FILE")]
+    pub rays: Option<PathBuf>,
+    /// The file of surfaces; by default those that come with the program.
+    #[arg(long, value_name = "FILE")]
+    pub shapes: Option<PathBuf>,
+    /// The directory to write to.
+    #[arg(short, long, value_name = "DIR", default_value = ".")]
+    pub output: PathBuf,
+    /// Paint the pixels of this surface instead.
+    #[arg(long, value_name = "SURFACE")]
+    pub map: Option<String>,
+    /// Width and height of each map in pixels.
+    #[arg(long, value_name = "PIXELS", default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub size: u32,
+    /// Say nothing on stderr but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
 }

@@ -7,6 +7,7 @@ use etalon::film;
 use etalon::plan::PlanError;
 use etalon::render::bins::BinError;
 use etalon::scene::SceneError;
+use etalon::study::finders::OracleError;
 
 use super::trace::RayError;
 
@@ -24,6 +25,33 @@ pub enum CommandError {
     Singular {
         /// The object.
         name: String,
+    },
+    /// A file of the comparison of finders cannot be read.
+    #[error("error: cannot read {}: {reason}", path.display())]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// A result of the comparison of finders cannot be written.
+    #[error("error: cannot write {}: {reason}", path.display())]
+    Result {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// The rays or surfaces of the comparison of finders cannot be used.
+    #[error("error: {0}")]
+    Oracle(#[from] OracleError),
+    /// There is no such surface to paint.
+    #[error("error: --map: there is no surface \"{name}\"; there are {known}")]
+    Surface {
+        /// As it was asked for.
+        name: String,
+        /// All there are.
+        known: String,
     },
     /// The scene cannot be carried out.
     #[error("error: {0}")]

@@ -2,6 +2,7 @@
 
 mod args;
 mod error;
+mod finders;
 mod info;
 mod render;
 mod replay;
@@ -22,7 +23,6 @@ enum Answer {
     /// Done, or yes.
     Good,
     /// The answer is no.
-    #[expect(dead_code, reason = "no command asks a yes-or-no question so far")]
     No,
 }
 
@@ -40,6 +40,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Info(info) => info::run(info),
         Command::Trace(trace) => trace::run(trace),
         Command::Replay(replay) => replay::run(replay),
+        Command::Finders(finders) => finders::run(finders),
     };
     match answer {
         Ok(Answer::Good) => ExitCode::SUCCESS,

@@ -14,9 +14,12 @@ use super::error::CommandError;
 use super::{Answer, tell};
 pub use rays::RayError;
 use rays::{Line, Lines, Table};
-pub use target::{Decided, FirstHit, Target};
+pub use target::{Decided, First, FirstHit, Found, Target};
 
-const HEADING: &str = "id,hit,t,x,y,z,nx,ny,nz,object\n";
+use etalon::shape::implicit::certified::{Tier, Workspace};
+
+const HEADING: &str = "id,hit,t,x,y,z,nx,ny,nz,object,\
+     finder,enclosure_low,enclosure_high,multiplicity,tier\n";
 
 /// Rays of one piece of work: some milliseconds of it.
 const PIECE: usize = 1 << 10;
@@ -91,6 +94,7 @@ fn trace(target: &Target, table: &Table, lines: &[Line]) -> Piece {
         decided: Decided::default(),
         end: Ok(()),
     };
+    let mut workspace = Workspace::default();
     for line in lines {
         let row = match table.ray(line) {
             Ok(row) => row,
@@ -99,11 +103,14 @@ fn trace(target: &Target, table: &Table, lines: &[Line]) -> Piece {
                 break;
             }
         };
-        let hit = target.first_hit(&row.query, &mut piece.decided);
+        let first = target.first_hit(&row.query, &mut workspace, &mut piece.decided);
         push_field(&mut piece.text, &row.id);
-        match hit {
-            Some(hit) => push_hit(&mut piece.text, target, &hit),
-            None => piece.text.push_str(",0,,,,,,,,\n"),
+        match first {
+            First::Hit(hit) => push_hit(&mut piece.text, target, &hit),
+            First::Nothing => piece.text.push_str(",0,,,,,,,,,,,,,\n"),
+            First::Undecided(finder) => {
+                let _ = writeln!(piece.text, ",undecided,,,,,,,,,{finder},,,,");
+            }
         }
     }
     piece
@@ -119,7 +126,30 @@ fn push_hit(text: &mut String, target: &Target, hit: &FirstHit) {
     }
     text.push(',');
     push_field(text, target.name(hit.object));
+    match &hit.found {
+        Some(found) => push_found(text, found),
+        None => text.push_str(",,,,,"),
+    }
     text.push('\n');
+}
+
+/// Finder, enclosure, multiplicity and tier.
+fn push_found(text: &mut String, found: &Found) {
+    text.push(',');
+    text.push_str(found.finder);
+    push_numbers(text, &found.enclosure);
+    text.push(',');
+    if let Some(multiplicity) = found.multiplicity {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{multiplicity}");
+    }
+    text.push(',');
+    text.push_str(match found.tier {
+        Some(Tier::Double) => "f64",
+        Some(Tier::DoubleDouble) => "double-double",
+        Some(Tier::Exact) => "exact",
+        None => "uncertified",
+    });
 }
 
 /// The shortest digits that give back the same f64.
@@ -145,14 +175,25 @@ fn summary(decided: &Decided) -> String {
         rays,
         hits,
         ladder,
-        baseline,
+        undecided,
+        implicit,
     } = decided;
     let mut text = format!(
         "{rays} rays, {hits} hits; questions decided in f64: {}, in double-double: {}, exactly: {}",
         ladder.double, ladder.double_double, ladder.exact
     );
-    if *baseline > 0 {
-        let _ = write!(text, "; by the baseline finder, not certified: {baseline}");
+    if implicit.rays() > 0 {
+        let _ = write!(
+            text,
+            "; implicit surfaces in f64: {}, in double-double: {}, exactly: {}, undecided: {}",
+            implicit.double, implicit.double_double, implicit.exact, implicit.undecided
+        );
+    }
+    if implicit.uncertified > 0 {
+        let _ = write!(text, ", not certified: {}", implicit.uncertified);
+    }
+    if *undecided > 0 {
+        let _ = write!(text, "; {undecided} rays undecided");
     }
     text
 }

@@ -46,7 +46,16 @@ pub struct Step<'a, L: Lanes, const C: usize> {
     pub id: Identity<L>,
 }
 
-/// Advances the packet at `at` by one segment and returns which of its lanes go on.
+/// Where in the pool a packet stands, and where its survivors go.
+#[derive(Debug, Clone, Copy)]
+pub struct Places {
+    /// The packet.
+    pub at: usize,
+    /// Its survivors, not after it.
+    pub to: usize,
+}
+
+/// Advances a packet by one segment and returns how many of its paths go on.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "the parts of one worker's state")]
 pub fn bounce<L: Lanes, const C: usize>(
@@ -55,12 +64,11 @@ pub fn bounce<L: Lanes, const C: usize>(
     pool: &mut Pool<L::Scalar>,
     rows: &mut Rows<L::Scalar, C>,
     beyond_slots: &mut Vec<u32>,
-    at: usize,
-    active: u32,
+    Places { at, to }: Places,
     rungs: &mut Rungs,
     trace: &mut Option<Vec<Vertex>>,
-) -> u32 {
-    let active = l.mask_from_bits(active);
+) -> usize {
+    let active = l.mask_from_bits(pool.active::<L>(at));
     let ray = LaneRay::<L>::new(
         l,
         vector(l, pool, RealField::Origin, at),
@@ -116,7 +124,7 @@ pub fn bounce<L: Lanes, const C: usize>(
     }
 
     let next = step.scatter(l, &ray, &surface, going);
-    let alive = step.roulette(l, going);
+    let alive = active & step.roulette(l, going);
     step.note_end(l, &next, alive);
 
     let kept = step.flags & l.int(flags::TERMINATED | flags::BEYOND);
@@ -125,17 +133,30 @@ pub fn bounce<L: Lanes, const C: usize>(
         | bit_where(l, next.specular, flags::SPECULAR);
     let slots = l.load_int(&step.slots);
     let depth = step.depth.plus(l.int(1));
-    set_vector(l, pool, RealField::Origin, at, surface.point);
-    set_vector(l, pool, RealField::Direction, at, next.direction);
-    pool.set_real(l, RealField::Pdf, 0, at, next.pdf);
-    pool.set_int(l, IntField::Departure, at, surface.object);
-    pool.set_int(l, IntField::Flags, at, flags);
-    pool.set_int(l, IntField::Depth, at, depth);
-    pool.set_int(l, IntField::Slot, at, slots);
+    for (field, v) in [
+        (RealField::Origin, surface.point),
+        (RealField::Direction, next.direction),
+    ] {
+        pool.keep_real(l, field, 0, to, (v.x, alive));
+        pool.keep_real(l, field, 1, to, (v.y, alive));
+        pool.keep_real(l, field, 2, to, (v.z, alive));
+    }
+    pool.keep_real(l, RealField::Pdf, 0, to, (next.pdf, alive));
+    for (field, x) in [
+        (IntField::Departure, surface.object),
+        (IntField::Flags, flags),
+        (IntField::Depth, depth),
+        (IntField::Key, step.id.key),
+        (IntField::Index, step.id.index),
+        (IntField::Slot, slots),
+        (IntField::Row, step.row),
+    ] {
+        pool.keep_int(l, field, to, (x, alive));
+    }
     if let (Some(trace), Some(vertex)) = (trace, vertex) {
         trace.push(vertex);
     }
-    alive.bits()
+    alive.bits().count_ones() as usize
 }
 
 #[inline(always)]
@@ -145,19 +166,6 @@ fn vector<L: Lanes>(l: L, pool: &Pool<L::Scalar>, field: RealField, at: usize) -
         pool.real(l, field, 1, at),
         pool.real(l, field, 2, at),
     )
-}
-
-#[inline(always)]
-fn set_vector<L: Lanes>(
-    l: L,
-    pool: &mut Pool<L::Scalar>,
-    field: RealField,
-    at: usize,
-    v: Vec3<L::Real>,
-) {
-    pool.set_real(l, field, 0, at, v.x);
-    pool.set_real(l, field, 1, at, v.y);
-    pool.set_real(l, field, 2, at, v.z);
 }
 
 /// An object's index unless it is [`NOTHING`].

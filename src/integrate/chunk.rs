@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::bounce::bounce;
+use super::bounce::{Places, bounce};
 use super::develop::Spectrometer;
 use super::intersect::{NOTHING, Rungs};
 use super::model::Model;
@@ -165,38 +165,24 @@ fn render_inlined<L: Lanes, const C: usize>(
         trace,
     } = workspace;
     pool.length = 0;
-    pool.alive = 0;
     beyond_slots.clear();
     let mut taken = 0;
     loop {
-        let waiting = taken < requests.len();
-        let holes = pool.length - pool.alive;
-        let open = POOL - pool.alive;
-        // Compaction moves every field of every path: only when a quarter of the places gains.
-        if holes * 4 >= pool.length.max(1) || (waiting && open * 4 >= POOL) {
-            pool.compact(l);
-            while taken < requests.len() && pool.length + L::COUNT <= POOL {
-                let end = requests.len().min(taken + L::COUNT);
-                start(l, model, requests, taken..end, pool, rows);
-                taken = end;
-            }
-            pool.all_alive::<L>();
+        while taken < requests.len() && pool.length + L::COUNT <= POOL {
+            let end = requests.len().min(taken + L::COUNT);
+            start(l, model, requests, taken..end, pool, rows);
+            taken = end;
         }
         if pool.length == 0 {
             break;
         }
-        let mut alive = 0;
-        for (packet, at) in (0..pool.length).step_by(L::COUNT).enumerate() {
-            let active = pool.masks[packet];
-            if active == 0 {
-                continue;
-            }
-            let survivors =
-                bounce(l, model, pool, rows, beyond_slots, at, active, rungs, trace) & active;
-            pool.masks[packet] = survivors;
-            alive += survivors.count_ones() as usize;
+        let mut going_on = 0;
+        for at in (0..pool.length).step_by(L::COUNT) {
+            // Survivors never reach beyond the packet that is being worked on.
+            let places = Places { at, to: going_on };
+            going_on += bounce(l, model, pool, rows, beyond_slots, places, rungs, trace);
         }
-        pool.alive = alive;
+        pool.length = going_on;
     }
     tristimulus.clear();
     for slot in 0..requests.len() {

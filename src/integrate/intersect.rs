@@ -8,6 +8,7 @@ use super::pool::each;
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 use crate::shape::Tally;
+use crate::shape::implicit::placed::ImplicitTally;
 use crate::shape::lanes::implicit::StartSign;
 use crate::shape::lanes::{Enclosure, LaneRay, Span};
 use crate::shape::resolve::Departure;
@@ -24,6 +25,8 @@ pub struct Rungs {
     pub undecided: u64,
     /// Single questions that the ladder answered for those.
     pub ladder: Tally,
+    /// Rays asked about implicit surfaces, each surface counted.
+    pub implicit: ImplicitTally,
 }
 
 impl Rungs {
@@ -33,6 +36,7 @@ impl Rungs {
             rays: self.rays + other.rays,
             undecided: self.undecided + other.undecided,
             ladder: self.ladder.joined(other.ladder),
+            implicit: self.implicit.joined(other.implicit),
         }
     }
 }
@@ -67,35 +71,49 @@ pub(super) struct Candidate<L: Lanes> {
     pub part: L::Int,
 }
 
+/// The lanes that are asked, each about one object.
+#[derive(Clone, Copy)]
+pub(super) struct Asked<L: Lanes> {
+    /// All of them: rays that leave a convex surface outward, or a flat one, do not meet it again.
+    pub all: L::Mask,
+    /// Those that go inward from this object's own surface.
+    pub inside: L::Mask,
+}
+
+impl<L: Lanes> Asked<L> {
+    #[inline(always)]
+    pub fn new(l: L, objects: L::Int, flat: bool, leaving: &Leaving<L>, asked: L::Mask) -> Self {
+        let own = asked & leaving.object.same(objects);
+        let inside = if flat {
+            l.mask(false)
+        } else {
+            own & leaving.inward
+        };
+        Self {
+            all: (asked & !own) | inside,
+            inside,
+        }
+    }
+}
+
 /// Picks the crossing that counts: the first one ahead, or the exit for rays that go inward from
-/// this object's own surface; none for rays that leave it outward.
+/// this object's own surface.
 #[inline(always)]
-pub(super) fn candidate<L: Lanes>(
-    l: L,
-    span: &Span<L>,
-    flat: bool,
-    own: L::Mask,
-    inward: L::Mask,
-) -> Candidate<L> {
+pub(super) fn candidate<L: Lanes>(l: L, span: &Span<L>, asked: &Asked<L>) -> Candidate<L> {
     let zero = l.real(0.0);
     let Span {
         mut near, far, hit, ..
     } = *span;
-    let mut excluded = span.miss | own;
-    if !flat {
-        let inside = own & inward;
-        if inside.any() {
-            // The entering crossing is the start.
-            let behind = l.real(f64::NEG_INFINITY);
-            near.low = l.select(inside, behind, near.low);
-            near.high = l.select(inside, behind, near.high);
-            excluded = span.miss | (own & !inside);
-        }
+    if asked.inside.any() {
+        // The entering crossing is the start.
+        let behind = l.real(f64::NEG_INFINITY);
+        near.low = l.select(asked.inside, behind, near.low);
+        near.high = l.select(asked.inside, behind, near.high);
     }
     let leaves = near.high.lt(zero);
     let low = l.select(leaves, far.low, near.low);
     let high = l.select(leaves, far.high, near.high);
-    let possible = !(excluded | high.lt(zero));
+    let possible = asked.all & !(span.miss | high.lt(zero));
     Candidate {
         at: Enclosure {
             // The larger of NaN and 0 is 0: what is not known could be anywhere.
@@ -163,18 +181,16 @@ impl<L: Lanes> Search<L> {
     ) {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
-        let index = l.int(k);
-        let span = shape.span(l, ray, asked, self.best.high);
-        if !(asked & !span.miss).any() {
+        let asked = Asked::new(l, l.int(k), kind.is_flat(), leaving, asked);
+        let span = shape.span(l, ray, asked.all, self.best.high);
+        if !(asked.all & !span.miss).any() {
             return;
         }
-        let own = leaving.object.same(index);
-        let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
-        let possible = c.possible & asked;
-        let take = c.certain & possible & c.at.high.lt(self.best.high);
+        let c = candidate(l, &span, &asked);
+        let take = c.certain & c.at.high.lt(self.best.high);
         // Of this crossing and the best so far, the one that is not taken remains a rival.
         let loser = l.select(take, self.best.low, c.at.low);
-        self.rival = l.select(possible, loser.min(self.rival), self.rival);
+        self.rival = l.select(c.possible, loser.min(self.rival), self.rival);
         self.best.low = l.select(take, c.at.low, self.best.low);
         self.best.high = l.select(take, c.at.high, self.best.high);
         let part = c.part.plus(l.int(model.parts.first[k as usize]));
@@ -254,7 +270,8 @@ pub fn nearest<L: Lanes>(
                     on: leaving.object.same(index),
                     inward: leaving.inward,
                 };
-                let (t, found) = implicit.first_change(l, ray, start, best.t, active);
+                let tally = &mut rungs.implicit;
+                let (t, found) = implicit.first_hit(l, ray, start, best.t, active, tally);
                 best.t = l.select(found, t, best.t);
                 let part = l.int(model.parts.first[*object as usize]);
                 best.part = l.select_int(found, part, best.part);
@@ -303,16 +320,15 @@ impl<L: Lanes> Blocks<L> {
     ) {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
-        let index = l.int(k);
-        let span = shape.span(l, &shadow.ray, asked, shadow.limit);
-        if !(asked & !span.miss).any() {
+        let asked = asked & !shadow.except.same(l.int(k));
+        let asked = Asked::new(l, l.int(k), kind.is_flat(), leaving, asked);
+        let span = shape.span(l, &shadow.ray, asked.all, shadow.limit);
+        if !(asked.all & !span.miss).any() {
             return;
         }
-        let own = leaving.object.same(index);
-        let c = candidate(l, &span, kind.is_flat(), own, leaving.inward);
-        let counted = c.possible & asked & !shadow.except.same(index);
-        self.blocked = self.blocked | (c.certain & c.at.high.lt(shadow.limit) & counted);
-        self.doubtful = self.doubtful | (c.at.low.lt(shadow.limit) & counted);
+        let c = candidate(l, &span, &asked);
+        self.blocked = self.blocked | (c.certain & c.at.high.lt(shadow.limit));
+        self.doubtful = self.doubtful | (c.possible & c.at.low.lt(shadow.limit));
     }
 
     /// The same as one copy of code, for the hierarchy.
@@ -391,7 +407,9 @@ pub fn occluded<L: Lanes>(
                     inward: leaving.inward,
                 };
                 let wanted = active & !blocked & !shadow.except.same(index);
-                let (_, found) = implicit.first_change(l, &shadow.ray, start, shadow.limit, wanted);
+                let (ray, limit) = (&shadow.ray, shadow.limit);
+                let tally = &mut rungs.implicit;
+                let (_, found) = implicit.first_hit(l, ray, start, limit, wanted, tally);
                 blocked = blocked | (found & wanted);
             }
             blocked

@@ -4,7 +4,7 @@
 //! one, and the lanes are boxes, or balls: the answers for a ray depend neither on its neighbours
 //! nor on their number.
 
-use super::intersect::{Blocks, Candidate, Leaving, Search, Shadow, candidate};
+use super::intersect::{Asked, Blocks, Candidate, Leaving, Search, Shadow, candidate};
 use super::model::{Many, Model};
 use super::pool::{WIDEST, array, each, int_array};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
@@ -103,15 +103,13 @@ impl<N: Lanes> Lone<N> {
         from: usize,
         limit: N::Scalar,
     ) -> Option<(Candidate<N>, N::Mask, N::Int)> {
-        let asked = balls.present(n, from);
-        let span = balls.span(n, from, &self.ray, asked, n.splat(limit));
-        if !(asked & !span.miss).any() {
+        let objects = n.load_int(&balls.objects[from..]);
+        let asked = Asked::new(n, objects, false, &self.leaving, balls.present(n, from));
+        let span = balls.span(n, from, &self.ray, asked.all, n.splat(limit));
+        if !(asked.all & !span.miss).any() {
             return None;
         }
-        let objects = n.load_int(&balls.objects[from..]);
-        let own = self.leaving.object.same(objects);
-        let candidate = candidate(n, &span, false, own, self.leaving.inward);
-        Some((candidate, asked, objects))
+        Some((candidate(n, &span, &asked), asked.all, objects))
     }
 
     /// What one object answers, in all lanes.
@@ -128,18 +126,13 @@ impl<N: Lanes> Lone<N> {
             || {
                 let shape = &model.shapes[k as usize];
                 let kind = shape.kind?;
-                let span = shape.span(n, &self.ray, n.mask(true), n.splat(limit));
-                if !(!span.miss).any() {
+                let flat = kind.is_flat();
+                let asked = Asked::new(n, n.int(k), flat, &self.leaving, n.mask(true));
+                let span = shape.span(n, &self.ray, asked.all, n.splat(limit));
+                if !(asked.all & !span.miss).any() {
                     return None;
                 }
-                let own = self.leaving.object.same(n.int(k));
-                Some(candidate(
-                    n,
-                    &span,
-                    kind.is_flat(),
-                    own,
-                    self.leaving.inward,
-                ))
+                Some(candidate(n, &span, &asked))
             },
         )
     }

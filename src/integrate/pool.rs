@@ -1,8 +1,8 @@
 //! The state of the paths in flight.
 //!
-//! Paths end at different times. Each pass over the pool advances all of them by one segment;
-//! when enough have ended the survivors are moved together, in order, and new camera samples fill
-//! the free end, so that lanes stay full. Only what changes places with a path lies in the pool;
+//! Paths end at different times. Each pass over the pool advances all of them by one segment and
+//! writes the survivors down one after the other, in order; new camera samples fill the free end, so
+//! that lanes stay full. Only what changes places with a path lies in the pool;
 //! its spectra lie in rows by sample ([`Rows`]) and stay where they are.
 
 pub use crate::math::lanes::WIDEST;
@@ -62,14 +62,10 @@ pub mod flags {
 #[derive(Debug)]
 pub struct Pool<T> {
     capacity: usize,
-    /// Paths in the pool, ended ones included.
+    /// Number of paths.
     pub length: usize,
-    /// Paths still going.
-    pub alive: usize,
     reals: Vec<T>,
     ints: Vec<u32>,
-    /// One word of alive lanes a packet.
-    pub masks: Vec<u32>,
 }
 
 /// A path's values at its wavelengths, which are wanted together.
@@ -132,25 +128,16 @@ impl<T: Copy + Default> Pool<T> {
         Self {
             capacity,
             length: 0,
-            alive: 0,
             reals: vec![T::default(); REALS * capacity],
             ints: vec![0; INTS * capacity],
-            masks: vec![0; capacity],
         }
     }
 
-    /// Declares every path in the pool alive.
-    pub fn all_alive<L: Lanes>(&mut self) {
-        self.alive = self.length;
-        let mut left = self.length;
-        for mask in &mut self.masks {
-            let here = left.min(L::COUNT);
-            *mask = ((1u64 << here) - 1) as u32;
-            left -= here;
-            if here == 0 {
-                break;
-            }
-        }
+    /// Bits of the lanes that hold paths in the packet at `at`.
+    #[inline(always)]
+    pub fn active<L: Lanes>(&self, at: usize) -> u32 {
+        let here = (self.length - at).min(L::COUNT);
+        ((1u64 << here) - 1) as u32
     }
 
     /// Reads a packet of a field's component.
@@ -192,39 +179,32 @@ impl<T: Copy + Default> Pool<T> {
         l.store_int(x, &mut self.ints[at..]);
     }
 
-    /// Moves the paths still going to the front, keeping their order.
-    #[inline(never)]
-    pub fn compact<L: Lanes<Scalar = T>>(&mut self, l: L) {
-        l.vectorize(
-            #[inline(always)]
-            || self.compact_inlined(l),
-        );
+    /// Writes the lanes in `keep` of a field's component from `at` on; of what stood in the rest of a
+    /// packet there, nothing is left.
+    #[inline(always)]
+    pub fn keep_real<L: Lanes<Scalar = T>>(
+        &mut self,
+        l: L,
+        field: RealField,
+        i: usize,
+        at: usize,
+        (x, keep): (L::Real, L::Mask),
+    ) {
+        let at = (field as usize + i) * self.capacity + at;
+        l.compress_into(x, keep, &mut self.reals[at..]);
     }
 
+    /// The same of an integer field.
     #[inline(always)]
-    fn compact_inlined<L: Lanes<Scalar = T>>(&mut self, l: L) {
-        let mut to = 0;
-        for (packet, from) in (0..self.length).step_by(L::COUNT).enumerate() {
-            let bits = self.masks[packet];
-            let kept = bits.count_ones() as usize;
-            if kept == 0 {
-                continue;
-            }
-            if to != from || kept != L::COUNT {
-                let keep = l.mask_from_bits(bits);
-                for field in self.reals.chunks_exact_mut(self.capacity) {
-                    let x = l.load(&field[from..]);
-                    l.compress_into(x, keep, &mut field[to..]);
-                }
-                for field in self.ints.chunks_exact_mut(self.capacity) {
-                    let x = l.load_int(&field[from..]);
-                    l.compress_int_into(x, keep, &mut field[to..]);
-                }
-            }
-            to += kept;
-        }
-        self.length = to;
-        self.alive = to;
+    pub fn keep_int<L: Lanes<Scalar = T>>(
+        &mut self,
+        l: L,
+        field: IntField,
+        at: usize,
+        (x, keep): (L::Int, L::Mask),
+    ) {
+        let at = field as usize * self.capacity + at;
+        l.compress_int_into(x, keep, &mut self.ints[at..]);
     }
 }
 

@@ -200,7 +200,9 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     ) -> Lit<L> {
         let model = self.model;
         let zero = l.real(0.0);
-        let chosen = self.choose_light(l);
+        let [u, v] = numbers;
+        let (chosen, u) = self.choose_light(l, u);
+        let numbers = [u, v];
         let mut towards = Towards::<L> {
             direction: normal,
             distance: zero,
@@ -287,21 +289,28 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         lit
     }
 
-    /// The number of each lane's light, by the lights' probabilities.
+    /// The number of each lane's light, by the lights' probabilities, and u stretched from the share
+    /// of [0, 1) that belongs to that light over all of it.
     #[inline(always)]
-    fn choose_light(&self, l: L) -> L::Int {
+    fn choose_light(&self, l: L, u: L::Real) -> (L::Int, L::Real) {
         let mut chosen = l.int(0);
-        if let [_, others @ ..] = self.model.lights.as_slice()
-            && !others.is_empty()
-        {
-            let sequence = &self.model.sequence;
-            let u = sequence.single(l, self.id, Slot::Choice, self.depth);
-            for (k, light) in others.iter().enumerate() {
-                let here = u.ge(l.splat(light.below));
-                chosen = l.select_int(here, l.int(k as u32 + 1), chosen);
-            }
+        let [first, others @ ..] = self.model.lights.as_slice() else {
+            return (chosen, u);
+        };
+        if others.is_empty() {
+            return (chosen, u);
         }
-        chosen
+        let mut below = l.splat(first.below);
+        let mut probability = l.splat(first.probability);
+        for (k, light) in others.iter().enumerate() {
+            let here = u.ge(l.splat(light.below));
+            chosen = l.select_int(here, l.int(k as u32 + 1), chosen);
+            below = l.select(here, l.splat(light.below), below);
+            probability = l.select(here, l.splat(light.probability), probability);
+        }
+        let largest = 1.0 - 1.0 / (1u64 << L::UNIFORM_BITS) as f64;
+        let stretched = ((u - below) / probability).min(l.real(largest));
+        (chosen, stretched)
     }
 
     /// Reflection or refraction at glass, chosen by the mean reflectance over the wavelengths

@@ -114,7 +114,7 @@ pub fn surfaces<L: Lanes>(
                 emission: gathered.emission,
                 emission_weight: l.real(1.0),
             };
-            others(l, model, p, has(word::OTHER), &mut out);
+            others(l, model, [p, ray.direction], has(word::OTHER), &mut out);
             let front = out.normal.dot(ray.direction).lt(l.real(0.0));
             out.front = hit & front;
             out.emits = (has(word::EMITS_FRONT) & front) | (has(word::EMITS_BACK) & !front);
@@ -236,12 +236,12 @@ fn one_by_one<L: Lanes>(
     out
 }
 
-/// The surfaces of shapes that no few numbers describe.
+/// The surfaces of shapes that no few numbers describe, met at `p` in the directions `d`.
 #[inline(always)]
 fn others<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
-    p: Vec3<L::Real>,
+    [p, d]: [Vec3<L::Real>; 2],
     m: L::Mask,
     out: &mut Surfaces<L>,
 ) {
@@ -256,7 +256,7 @@ fn others<L: Lanes>(
             let surface = if shape.kind.is_some() {
                 shape.surface(l, p)
             } else {
-                implicit_surface(l, model, k, p)
+                implicit_surface(l, model, k, p, d, here)
             };
             out.point = Vec3::select(l, here, surface.point, out.point);
             out.normal = Vec3::select(l, here, surface.normal, out.normal);
@@ -290,23 +290,22 @@ fn checkers<L: Lanes>(l: L, model: &Model<L::Scalar>, checkered: L::Mask, out: &
     );
 }
 
-/// An implicit surface's outward normal: its gradient; where that vanishes, the direction from
-/// the object's origin, so that the normal is finite everywhere.
+/// An implicit surface's outward normal; finite everywhere.
 #[inline(always)]
 fn implicit_surface<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
     object: u32,
     point: Vec3<L::Real>,
+    direction: Vec3<L::Real>,
+    here: L::Mask,
 ) -> LaneSurface<L> {
     let inverse = &model.shapes[object as usize].inverse;
     let local = inverse.point(l, point);
     let mut normal = local;
     for (k, implicit) in &model.implicits {
         if *k == object {
-            let gradient = implicit.gradient(l, local);
-            let defined = gradient.length_squared().gt(l.real(0.0));
-            normal = Vec3::select(l, defined, gradient, normal);
+            normal = implicit.normal(l, local, inverse.vector(l, direction), here);
         }
     }
     LaneSurface {

@@ -85,8 +85,10 @@ impl<T: Scalar> SphereTable<T> {
 struct Cone<L: Lanes> {
     to: Vec3<L::Real>,
     squared: L::Real,
-    /// 1 − cos of the half-angle, without cancellation.
+    /// 1 − cos of the half-angle, without cancellation: sin²/(1 + cos).
     height: L::Real,
+    /// Density of uniform sampling: 1/(2π (1 − cos)).
+    pdf: L::Real,
     outside: L::Mask,
 }
 
@@ -157,13 +159,15 @@ impl<L: Lanes> Spheres<L> {
     fn cone(&self, l: L, p: Vec3<L::Real>) -> Cone<L> {
         let to = self.centre - p;
         let squared = to.length_squared();
-        let sine_squared = self.radius * self.radius / squared;
+        let radius_squared = self.radius * self.radius;
+        let sine_squared = radius_squared / squared;
         let one = l.real(1.0);
-        let cosine = (one - sine_squared).max(l.real(0.0)).sqrt();
+        let both = one + (one - sine_squared).max(l.real(0.0)).sqrt();
         Cone {
             to,
             squared,
-            height: sine_squared / (one + cosine),
+            height: sine_squared / both,
+            pdf: both * squared / (radius_squared * l.real(std::f64::consts::TAU)),
             outside: squared.gt(self.inside_squared),
         }
     }
@@ -218,7 +222,7 @@ impl<L: Lanes> Spheres<L> {
     /// t² − 2t (to · ω) = r² − |to|² in whichever form adds.
     #[inline(always)]
     fn density(&self, l: L, cone: &Cone<L>, direction: Vec3<L::Real>, m: L::Mask) -> L::Real {
-        let uniform = cone_pdf(l, cone.height);
+        let uniform = cone.pdf;
         if !(m & !cone.outside).any() {
             return uniform;
         }
@@ -233,10 +237,4 @@ impl<L: Lanes> Spheres<L> {
         let by_area = t * t * self.radius / (half * area);
         l.select(cone.outside, uniform, by_area)
     }
-}
-
-/// 1/(2π (1 − cos)).
-#[inline(always)]
-fn cone_pdf<L: Lanes>(l: L, height: L::Real) -> L::Real {
-    l.real(1.0 / std::f64::consts::TAU) / height
 }

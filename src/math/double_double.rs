@@ -58,6 +58,11 @@ impl DoubleDouble {
         error: 0.0,
     };
 
+    /// The two numbers whose sum this is.
+    pub fn parts(&self) -> [f64; 2] {
+        [self.hi, self.lo]
+    }
+
     #[inline]
     fn is_exact_zero(&self) -> bool {
         self.hi == 0.0 && self.lo == 0.0 && self.error == 0.0

@@ -18,6 +18,19 @@ pub struct Exact {
 pub const VALUE_BITS: u64 = 1024;
 
 impl Exact {
+    /// An integer.
+    pub fn integer(mantissa: BigInt) -> Self {
+        Self {
+            mantissa,
+            exponent: 0,
+        }
+    }
+
+    /// m and e of the number m · 2ᵉ.
+    pub fn parts(&self) -> (&BigInt, i64) {
+        (&self.mantissa, self.exponent)
+    }
+
     /// Shift the mantissa so that it has at least `bits` bits and the exponent is even.
     fn widened_to(&self, bits: u64) -> (BigInt, i64) {
         let mut shift = bits.saturating_sub(self.mantissa.bits());

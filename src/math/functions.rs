@@ -16,7 +16,7 @@ fn single<L: Lanes>() -> bool {
 
 /// Σ cᵢ xⁱ by Horner's rule.
 #[inline(always)]
-fn polynomial<L: Lanes>(l: L, x: L::Real, coefficients: &[f64]) -> L::Real {
+pub(super) fn polynomial<L: Lanes>(l: L, x: L::Real, coefficients: &[f64]) -> L::Real {
     let mut sum = l.real(coefficients[coefficients.len() - 1]);
     for &c in coefficients.iter().rev().skip(1) {
         sum = sum.mul_add(x, l.real(c));
@@ -24,7 +24,8 @@ fn polynomial<L: Lanes>(l: L, x: L::Real, coefficients: &[f64]) -> L::Real {
     sum
 }
 
-const SIN: [f64; 9] = [
+/// Taylor series of sin x / x in x².
+pub(super) const SIN: [f64; 9] = [
     1.0,
     -1.0 / 6.0,
     1.0 / 120.0,
@@ -35,7 +36,8 @@ const SIN: [f64; 9] = [
     -1.0 / 1_307_674_368_000.0,
     1.0 / 355_687_428_096_000.0,
 ];
-const COS: [f64; 9] = [
+/// Taylor series of cos x in x².
+pub(super) const COS: [f64; 9] = [
     1.0,
     -1.0 / 2.0,
     1.0 / 24.0,

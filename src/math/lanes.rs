@@ -233,6 +233,8 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn to_real(self, x: Self::Int) -> Self::Real;
     /// Splits positive normal x = m · 2ᵉ with m in [1, 2): (m, e).
     fn split_exponent(self, x: Self::Real) -> (Self::Real, Self::Real);
+    /// 2ᵉ for whole e within the exponents of normal numbers.
+    fn power_of_two(self, e: Self::Real) -> Self::Real;
     /// Stores the true lanes, in order, into the first of `COUNT` places; what the other places
     /// get is unspecified.
     fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [Self::Scalar]);
@@ -597,6 +599,10 @@ impl<S: Simd> Lanes for Single<S> {
         (mantissa.bitcast(), exponent)
     }
     #[inline(always)]
+    fn power_of_two(self, e: Self::Real) -> Self::Real {
+        (self.truncate(e + self.real(127.0)) << 23).bitcast()
+    }
+    #[inline(always)]
     fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [Self::Scalar]) {
         self.store(x.compress(keep), to);
     }
@@ -735,6 +741,12 @@ impl<S: Simd> Lanes for Double<S> {
             | u64x8::splat(self.0, 0x3ff0_0000_0000_0000);
         let exponent = self.to_real(bits.right(52)) - self.real(1023.0);
         (mantissa.bitcast(), exponent)
+    }
+    #[inline(always)]
+    fn power_of_two(self, e: Self::Real) -> Self::Real {
+        // The sum's low bits are the biased exponent; the shift leaves nothing else.
+        let biased: u64x8<S> = (e + self.real(4_503_599_627_370_496.0 + 1023.0)).bitcast();
+        (biased << 52).bitcast()
     }
     #[inline(always)]
     fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [Self::Scalar]) {

@@ -253,6 +253,10 @@ impl<L: Lanes> Lanes for Twice<L> {
         (Pair(low.0, high.0), Pair(low.1, high.1))
     }
     #[inline(always)]
+    fn power_of_two(self, e: Self::Real) -> Self::Real {
+        Pair(self.0.power_of_two(e.0), self.0.power_of_two(e.1))
+    }
+    #[inline(always)]
     fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [Self::Scalar]) {
         self.0.compress_into(x.0, keep.0, to);
         let kept = keep.0.bits().count_ones() as usize;

@@ -189,8 +189,7 @@ impl<T: Scalar> Builder<T> {
             .push(LaneShape::new(kind, &to_world, &inverse, self.reach));
         match &object.shape {
             Shape::Implicit(implicit) => {
-                let lanes =
-                    LaneImplicit::new(implicit.surface, implicit.inside, implicit.steps, &inverse);
+                let lanes = LaneImplicit::new(implicit, &to_world, &inverse).ok()?;
                 self.implicits.push((index as u32, lanes));
             }
             _ => {

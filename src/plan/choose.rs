@@ -33,6 +33,8 @@ pub const GAP_SHARE: f64 = 1.0 / 16.0;
 pub enum PrecisionReason {
     /// The user said so.
     Asked,
+    /// Hits on implicit surfaces are certified in double.
+    Implicit,
     /// The numbers decide.
     Measured {
         /// The bound in single precision beside the pixel.
@@ -71,6 +73,9 @@ pub fn choose(scene: &Scene, full: bool) -> Result<Choices, PlanError> {
     let (precision, precision_reason) = match scene.image.precision {
         PrecisionChoice::F32 => (Precision::Single, PrecisionReason::Asked),
         PrecisionChoice::F64 => (Precision::Double, PrecisionReason::Asked),
+        PrecisionChoice::Auto if needs(scene).implicit => {
+            (Precision::Double, PrecisionReason::Implicit)
+        }
         PrecisionChoice::Auto => (
             if suffices {
                 Precision::Single

@@ -9,7 +9,8 @@ use crate::integrate::model::{Model, Needs};
 use crate::light::LightShape;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Replicates;
-use crate::scene::{ImplicitSurface, Object, SamplerKind, Scene, Shape, Surface};
+use crate::scene::{Object, SamplerKind, Scene, Shape, Surface};
+use crate::shape::lanes::implicit::LaneImplicit;
 
 /// As many names as a line lists.
 const LISTED: usize = 6;
@@ -75,19 +76,26 @@ fn objects(scene: &Scene) -> String {
     format!("objects: {}", counted(dressed))
 }
 
-fn shape_kind(object: &Object) -> &'static str {
-    match &object.shape {
+fn shape_kind(object: &Object) -> String {
+    let name = match &object.shape {
         Shape::Sphere => "sphere",
         Shape::Cube => "cube",
         Shape::Cylinder => "cylinder",
         Shape::Disk => "disk",
         Shape::Rectangle => "rectangle",
         Shape::Plane => "plane",
-        Shape::Implicit(implicit) => match implicit.surface {
-            ImplicitSurface::Heart => "implicit heart",
-            ImplicitSurface::Mitchell => "implicit Mitchell",
-        },
-    }
+        Shape::Implicit(implicit) => {
+            let what = match &implicit.field.polynomial {
+                Some(polynomial) => format!("of degree {}", polynomial.degree()),
+                None => format!("of {} operations", implicit.field.tape.operations().len()),
+            };
+            return match implicit.name {
+                Some(name) => format!("implicit {name} {what}"),
+                None => format!("implicit surface {what}"),
+            };
+        }
+    };
+    name.to_owned()
 }
 
 fn surface_kind(surface: &Surface) -> &'static str {
@@ -263,8 +271,15 @@ fn precision(plan: &Plan) -> String {
         Precision::Single => "single (f32)",
         Precision::Double => "double (f64)",
     };
-    let PrecisionReason::Measured { error, gap } = plan.choices.precision_reason else {
-        return format!("precision: {name}, as asked for");
+    let (error, gap) = match plan.choices.precision_reason {
+        PrecisionReason::Asked => return format!("precision: {name}, as asked for"),
+        PrecisionReason::Implicit => {
+            return format!(
+                "precision: {name}: hits on implicit surfaces are proved in double, and rays leave \
+                 from where they are"
+            );
+        }
+        PrecisionReason::Measured { error, gap } => (error, gap),
     };
     let pixel = error.position / error.pixel;
     let gap = gap.map_or_else(
@@ -290,13 +305,6 @@ fn intersection(scene: &Scene, plan: &Plan) -> String {
         Tables::Single(tables) => (tables.0.hierarchy.is_some(), tables.0.occluders.len()),
         Tables::Double(tables) => (tables.0.hierarchy.is_some(), tables.0.occluders.len()),
     };
-    let implicit = |object: &&Object| matches!(object.shape, Shape::Implicit(_));
-    let implicits = scene
-        .objects
-        .iter()
-        .map(|o| &o.value)
-        .filter(implicit)
-        .count();
     let count = scene.objects.len();
     let mut text = format!(
         "intersection: {}; what lanes leave undecided goes to the exact ladder",
@@ -312,12 +320,40 @@ fn intersection(scene: &Scene, plan: &Plan) -> String {
             "; shadow rays ask {occluders}, as the others can hide no light"
         ));
     }
-    if implicits > 0 {
-        text.push_str(&format!(
-            "; {implicits} implicit by equal steps and bisection, not certified"
-        ));
+    let finders = match &plan.tables {
+        Tables::Single(tables) => finders(&tables.0.implicits),
+        Tables::Double(tables) => finders(&tables.0.implicits),
+    };
+    for (name, how) in FINDERS {
+        let count = finders.iter().filter(|finder| **finder == name).count();
+        if count > 0 {
+            text.push_str(&format!("; {count} implicit by {how}"));
+        }
     }
     text
+}
+
+/// Finders of implicit surfaces and how they work.
+const FINDERS: [(&str, &str); 4] = [
+    (
+        "polynomial",
+        "certified roots of polynomials: in lanes of f64, then of double-double, then exactly",
+    ),
+    (
+        "interval",
+        "interval enclosures in lanes of f64, cut until each answer is proved",
+    ),
+    (
+        "sphere-trace",
+        "steps as long as a proved Lipschitz bound allows",
+    ),
+    ("sign-change", "equal steps and bisection, not certified"),
+];
+
+/// The finder of each implicit surface.
+fn finders<T: Scalar>(implicits: &[(u32, LaneImplicit<T>)]) -> Vec<&'static str> {
+    let name = |(_, implicit): &(u32, LaneImplicit<T>)| implicit.finder().name();
+    implicits.iter().map(name).collect()
 }
 
 fn sampler(scene: &Scene, plan: &Plan) -> String {

@@ -4,6 +4,13 @@
 //! the third into one of the others. They know neither rays nor surfaces: what they are given is
 //! the function along a stretch of t.
 
+pub mod bernstein;
+pub mod departure;
+pub mod exact;
+pub mod interval;
+pub mod sign_change;
+pub mod sphere_trace;
+
 /// A zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Root {

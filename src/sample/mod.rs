@@ -24,9 +24,9 @@ pub enum Slot {
     Wavelength = 1,
     /// Position on the lens.
     Lens = 2,
-    /// Which light; which lobe of the surface.
+    /// Which lobe of the surface.
     Choice = 3,
-    /// Point on the chosen light.
+    /// Which light, and which point of it.
     Light = 4,
     /// Direction of the scattered ray.
     Bsdf = 5,

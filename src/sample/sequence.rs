@@ -334,7 +334,7 @@ impl Sequence {
         second: Slot,
         depth: L::Int,
     ) -> [[L::Real; 2]; 2] {
-        debug_assert!(slot as u32 % 2 == 0 && second as u32 == slot as u32 + 1);
+        debug_assert!((slot as u32).is_multiple_of(2) && second as u32 == slot as u32 + 1);
         l.vectorize(
             #[inline(always)]
             || match self.kind {
@@ -408,7 +408,11 @@ impl Sequence {
             Slot::Light | Slot::Bsdf => self.independent(l, id, Slot::Light, depth),
             Slot::Roulette | Slot::Beyond => self.independent(l, id, Slot::Roulette, depth),
         };
-        if slot as u32 % 2 == 0 { even } else { odd }
+        if (slot as u32).is_multiple_of(2) {
+            even
+        } else {
+            odd
+        }
     }
 
     #[inline(always)]

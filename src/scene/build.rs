@@ -6,10 +6,10 @@ use glam::DVec3;
 
 use super::fields::{Complaint, Fields, Report};
 use super::spectra::{self, Role, Spectra};
-use super::tree::{Node, Place, Table};
+use super::tree::{Node, Place, Table, Value};
 use super::{
-    Camera, Image, Lens, Light, Material, Named, Object, PrecisionChoice, Projection, SamplerKind,
-    materials, objects,
+    Camera, FinderChoice, Image, Lens, Light, Material, Named, Object, PrecisionChoice, Projection,
+    SamplerKind, materials, objects,
 };
 use crate::spectrum::Spectrum;
 
@@ -51,6 +51,7 @@ pub(super) const IMAGE_KEYS: &[&str] = &[
     "seed",
     "precision",
     "wavelengths",
+    "finder",
 ];
 
 const VECTOR: &str = "an array of 3 finite numbers";
@@ -75,7 +76,8 @@ pub(super) fn scene(report: &Report, base_dir: &Path, root: &Table) -> Option<Pa
     // Without a readable table of materials every use of one would be a further complaint.
     let hidden = materials.is_none() || (top.get("materials").is_none() && top.misspelt());
     let materials = materials.unwrap_or_default();
-    let objects = objects::read(report, top.get("object"), &materials.names, hidden);
+    let finder = finder(top.get("image"));
+    let objects = objects::read(report, top.get("object"), &materials.names, hidden, &finder);
     let lights = lights(&spectra, top.get("light"));
     Some(Parts {
         look: Look {
@@ -239,6 +241,10 @@ fn image(report: &Report, node: &Node) -> Option<Image> {
             Complaint::new(place, message).expected("at least one camera path in each replicate"),
         );
     }
+    // Objects have it; here it only must be one.
+    fields.optional("finder", FinderChoice::Auto, |what, node| {
+        report.choice(what, node, FinderChoice::NAMES)
+    })?;
     Some(Image {
         size: size?,
         spp: spp?,
@@ -249,6 +255,22 @@ fn image(report: &Report, node: &Node) -> Option<Image> {
         precision: precision?,
         wavelengths: wavelengths?,
     })
+}
+
+/// The finder of objects that name none, and where the file says so.
+fn finder(image: Option<&Node>) -> (FinderChoice, Option<Place>) {
+    let written = match image.map(|node| &node.value) {
+        Some(Value::Table(table)) => table.get("finder"),
+        _ => None,
+    };
+    let known = |node: &Node| match &node.value {
+        Value::Text(text) => FinderChoice::NAMES.iter().find(|(name, _)| name == text),
+        _ => None,
+    };
+    match written.and_then(|node| Some((known(node)?.1, node.place))) {
+        Some((finder, place)) => (finder, Some(place)),
+        None => (FinderChoice::Auto, None),
+    }
 }
 
 fn image_size(report: &Report, what: &str, node: &Node) -> Option<[u32; 2]> {

@@ -21,6 +21,8 @@ pub struct Overrides {
     pub panel: Option<String>,
     /// Dotted paths and TOML values, laid over the file and the panel in this order.
     pub set: Vec<(String, String)>,
+    /// Name of the finder of all implicit surfaces, whatever the file says.
+    pub finder: Option<String>,
 }
 
 /// Reads the scene file at `path`.
@@ -112,6 +114,14 @@ pub fn parse(
     for setting in settings.iter().filter(|s| !s.is_for_panels()) {
         setting.apply(&report, &mut asked);
     }
+    if let Some(name) = &options.finder {
+        let place = Place {
+            origin: origins.texts.len() - 1,
+            start: 0,
+            end: name.len(),
+        };
+        overlay::use_finder(&mut asked, place, name);
+    }
     let parts = build::scene(&report, base_dir, &asked);
     if options.set.is_empty() {
         check_others(&report, base_dir, root, &panels, chosen);
@@ -163,12 +173,13 @@ const START: Place = Place {
     end: 0,
 };
 
-/// The file, the `--set` arguments, and last the `--panel` argument.
+/// The file, the `--set` arguments, the `--panel` argument, and last the `--finder` argument.
 fn origins<'a>(path: &'a str, text: &str, options: &Overrides) -> Origins<'a> {
     let mut texts = vec![(path, text.to_owned())];
     let set = options.set.iter();
     texts.extend(set.map(|(key, value)| ("--set", format!("{key}={value}"))));
     texts.extend(options.panel.iter().map(|name| ("--panel", name.clone())));
+    texts.extend(options.finder.iter().map(|name| ("--finder", name.clone())));
     Origins { texts }
 }
 
@@ -251,10 +262,7 @@ fn panel(report: &Report, node: &Node) -> Option<Panel> {
         over.entries.push(Entry {
             key: "image".to_owned(),
             key_place: node.place,
-            node: Node {
-                place: node.place,
-                value: Value::Table(image),
-            },
+            node: Node::new(node.place, Value::Table(image)),
         });
     }
     name.map(|(name, name_place)| Panel {

@@ -8,6 +8,7 @@ mod build;
 mod error;
 mod fields;
 mod file;
+mod implicit;
 mod materials;
 mod names;
 mod objects;
@@ -19,9 +20,12 @@ mod tree;
 pub use error::{Diagnostic, SceneError};
 pub use file::{LARGEST_FILE, Overrides, load, panel_names, parse, read};
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use crate::math::affine::Affine;
+use crate::shape::implicit::expression::Expression;
 use crate::spectrum::Spectrum;
 use crate::spectrum::ior::RefractiveIndex;
 
@@ -183,24 +187,54 @@ pub enum Shape {
     Implicit(Implicit),
 }
 
-/// An implicit surface found by the report's method (fixed steps, sign change, bisection).
+/// The zeros of a field within a box.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Implicit {
-    /// Which surface.
-    pub surface: ImplicitSurface,
+    /// The named surface it is, if it is one.
+    pub name: Option<&'static str>,
+    /// The field, negative inside, in object coordinates.
+    pub field: Arc<Expression>,
     /// The clip box in object coordinates: lower and upper corner.
     pub inside: [DVec3; 2],
-    /// Steps of the baseline finder along the clipped ray.
+    /// Where the box cuts the inside of the surface, its faces belong to the surface.
+    pub closed: bool,
+    /// How its hits are found.
+    pub finder: FinderChoice,
+    /// Steps along the clipped ray, for the finder that steps.
     pub steps: u32,
 }
 
-/// The implicit surfaces of the report.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ImplicitSurface {
-    /// (x² + 9/4 y² + z² − 1)³ − x² z³ − 9/80 y² z³ (Taubin 1993).
-    Heart,
-    /// 4 (x⁴ + (y² + z²)²) + 17 x² (y² + z²) − 20 (x² + y² + z²) + 17 (Mitchell 1990).
-    Mitchell,
+/// How hits on an implicit surface are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FinderChoice {
+    /// What the plan chooses.
+    #[default]
+    Auto,
+    /// Equal steps, a change of sign, bisection: the report's method, which proves nothing.
+    SignChange,
+    /// Steps as long as a proved Lipschitz bound allows.
+    SphereTrace,
+    /// Interval enclosures, for any field.
+    Interval,
+    /// Isolation of the roots of a polynomial along the ray.
+    Polynomial,
+}
+
+impl FinderChoice {
+    /// All finders by the names they have in scene files.
+    pub const NAMES: &'static [(&'static str, Self)] = &[
+        ("auto", Self::Auto),
+        ("sign-change", Self::SignChange),
+        ("sphere-trace", Self::SphereTrace),
+        ("interval", Self::Interval),
+        ("polynomial", Self::Polynomial),
+    ];
+
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        let known = Self::NAMES.iter().find(|(_, finder)| *finder == self);
+        known.map_or("auto", |(name, _)| name)
+    }
 }
 
 /// What a surface does with light: it may reflect, and it may emit besides.

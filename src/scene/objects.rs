@@ -5,13 +5,14 @@ use std::collections::{HashMap, HashSet};
 use glam::DVec3;
 
 use super::fields::{Complaint, Fields, Report};
+use super::implicit::{self, DefaultFinder};
 use super::names::one_of;
 use super::transform;
 use super::tree::{Node, Value};
-use super::{Implicit, ImplicitSurface, Named, Object, Shape};
+use super::{Named, Object, Shape};
 use crate::math::affine::Affine;
 
-const SHAPES: &[&str] = &[
+pub(super) const SHAPES: &[&str] = &[
     "sphere",
     "cube",
     "cylinder",
@@ -21,13 +22,6 @@ const SHAPES: &[&str] = &[
     "implicit",
 ];
 const KEYS: &[&str] = &["name", "shape", "material", "transform"];
-const SURFACES: &[(&str, ImplicitSurface)] = &[
-    ("heart", ImplicitSurface::Heart),
-    ("mitchell", ImplicitSurface::Mitchell),
-];
-/// Steps along a ray of the baseline finder: default and maximum.
-const STEPS: u32 = 1000;
-const MOST_STEPS: u32 = 1_000_000;
 
 /// A shape as written: canonical form, its size, and where its centre is.
 struct Sized {
@@ -42,6 +36,7 @@ pub(super) fn read(
     node: Option<&Node>,
     materials: &[String],
     hidden: bool,
+    finder: &DefaultFinder,
 ) -> Option<Vec<Named<Object>>> {
     let Some(node) = node else {
         return Some(Vec::new());
@@ -66,7 +61,7 @@ pub(super) fn read(
     let mut used = HashSet::new();
     let mut objects = Vec::with_capacity(nodes.len());
     for (index, node) in nodes.iter().enumerate() {
-        objects.push(object(report, node, index, &find, &mut used));
+        objects.push(object(report, node, index, finder, &find, &mut used));
     }
     objects.into_iter().collect()
 }
@@ -75,6 +70,7 @@ fn object(
     report: &Report,
     node: &Node,
     index: usize,
+    finder: &DefaultFinder,
     find: &impl Fn(&str, &Node) -> Option<usize>,
     used: &mut HashSet<String>,
 ) -> Option<Named<Object>> {
@@ -87,7 +83,9 @@ fn object(
         let message = format!("the object name \"{name}\" is used twice");
         report.fail(Complaint::new(node.place, message).expected("a name of its own"))
     });
-    let sized = fields.required("shape", &one_of(SHAPES), |_, node| shape(report, node));
+    let sized = fields.required("shape", &one_of(SHAPES), |_, node| {
+        shape(report, node, finder)
+    });
     let material = fields.required("material", "the name of a material", find);
     let to_world = fields.optional("transform", None, |what, node| {
         transform::read(report, what, node).map(Some)
@@ -134,14 +132,11 @@ fn shape_name(shape: &Shape) -> &'static str {
         Shape::Disk => "disk",
         Shape::Rectangle => "rectangle",
         Shape::Plane => "plane",
-        Shape::Implicit(Implicit { surface, .. }) => match surface {
-            ImplicitSurface::Heart => "heart",
-            ImplicitSurface::Mitchell => "mitchell",
-        },
+        Shape::Implicit(implicit) => implicit.name.unwrap_or("implicit"),
     }
 }
 
-fn shape(report: &Report, node: &Node) -> Option<Sized> {
+fn shape(report: &Report, node: &Node, finder: &DefaultFinder) -> Option<Sized> {
     match &node.value {
         Value::Text(_) => {
             let choices = [
@@ -156,7 +151,10 @@ fn shape(report: &Report, node: &Node) -> Option<Sized> {
             let shape = report.choice("object.shape", node, &shapes)?.clone();
             Some(plain(shape, DVec3::ONE))
         }
-        Value::Table(table) if table.get("implicit").is_some() => implicit(report, node),
+        Value::Table(table) if table.get("implicit").is_some() => {
+            let implicit = implicit::read(report, node, finder)?;
+            Some(plain(Shape::Implicit(implicit), DVec3::ONE))
+        }
         Value::Table(_) => {
             let fields = Fields::open(report, "object.shape", node, SHAPES)?;
             let (kind, inner) = fields.exactly_one(SHAPES)?;
@@ -244,45 +242,4 @@ fn lengths<const N: usize>(report: &Report, what: &str, node: &Node) -> Option<[
         }
     }
     Some(numbers)
-}
-
-fn implicit(report: &Report, node: &Node) -> Option<Sized> {
-    let mut keys = SHAPES.to_vec();
-    keys.extend(["inside", "steps"]);
-    let fields = Fields::open(report, "object.shape", node, &keys)?;
-    let (_, name) = fields.exactly_one(SHAPES)?;
-    let surface = report.choice("object.shape.implicit", name, SURFACES);
-    let half = match surface {
-        Some(ImplicitSurface::Mitchell) => 3.0,
-        _ => 1.5,
-    };
-    let default = [DVec3::splat(-half), DVec3::splat(half)];
-    let inside = fields.optional("inside", default, |what, node| clip_box(report, what, node));
-    let steps = fields.optional("steps", STEPS, |what, node| {
-        report.count(what, node, 1..=MOST_STEPS)
-    });
-    let shape = Shape::Implicit(Implicit {
-        surface: surface?,
-        inside: inside?,
-        steps: steps?,
-    });
-    Some(plain(shape, DVec3::ONE))
-}
-
-fn clip_box(report: &Report, what: &str, node: &Node) -> Option<[DVec3; 2]> {
-    let expected = "[[x, y, z], [x, y, z]], the lower and the upper corner of a box";
-    let nodes = report.list(what, node, expected)?;
-    let [low, high] = nodes else {
-        let message = format!("{what} has {} entries", nodes.len());
-        return report.fail(Complaint::new(node.place, message).expected(expected));
-    };
-    let low = report.vector(&format!("{what}[0]"), low);
-    let high = report.vector(&format!("{what}[1]"), high);
-    let (low, high) = (low?, high?);
-    if low.cmplt(high).all() {
-        return Some([low, high]);
-    }
-    report.fail(
-        Complaint::new(node.place, format!("{what} is a box without inside")).expected(expected),
-    )
 }

@@ -41,6 +41,9 @@ const COMPANIONS: &[(&str, &str)] = &[
     ("name", "scale"),
     ("constant", "scale"),
     ("implicit", "inside"),
+    ("implicit", "parameters"),
+    ("implicit", "closed"),
+    ("implicit", "finder"),
     ("implicit", "steps"),
 ];
 
@@ -82,6 +85,32 @@ fn give_way(base: &mut Table, key: &str) {
                 base.entries.retain(|e| e.key != *companion);
             }
         }
+    }
+}
+
+/// Has all implicit surfaces found by one finder: the image's, instead of their own.
+pub(super) fn use_finder(root: &mut Table, place: Place, name: &str) {
+    if let Some(objects) = root.entries.iter_mut().find(|e| e.key == "object")
+        && let Value::List(objects) = &mut objects.node.value
+    {
+        for object in objects {
+            if let Value::Table(object) = &mut object.value
+                && let Some(shape) = object.entries.iter_mut().find(|e| e.key == "shape")
+                && let Value::Table(shape) = &mut shape.node.value
+            {
+                shape.entries.retain(|e| e.key != "finder");
+            }
+        }
+    }
+    if let Some(image) = root.entries.iter_mut().find(|e| e.key == "image")
+        && let Value::Table(image) = &mut image.node.value
+    {
+        image.entries.retain(|e| e.key != "finder");
+        image.entries.push(Entry {
+            key: "finder".to_owned(),
+            key_place: place,
+            node: Node::new(place, Value::Text(name.to_owned())),
+        });
     }
 }
 
@@ -146,10 +175,7 @@ impl Setting {
             table.entries.push(Entry {
                 key: key.clone(),
                 key_place: self.key_place,
-                node: Node {
-                    place: self.key_place,
-                    value: Value::Table(Table::default()),
-                },
+                node: Node::new(self.key_place, Value::Table(Table::default())),
             });
         }
         if let Some(entry) = table.entries.iter_mut().find(|e| e.key == *key) {
@@ -225,6 +251,7 @@ fn parse_value(report: &Report, key_place: Place, value: &str) -> Option<Node> {
         Err(_) if is_bare_word(value) => Some(Node {
             place,
             value: Value::Text(value.to_owned()),
+            written: Some(value.into()),
         }),
         Err(error) => report.fail(
             Complaint::new(place, format!("not a value: {}", error.message().trim()))

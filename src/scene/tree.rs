@@ -40,6 +40,8 @@ impl Origins<'_> {
 pub(super) struct Node {
     pub place: Place,
     pub value: Value,
+    /// A number or string as it was written, quotes included.
+    pub written: Option<Box<str>>,
 }
 
 /// The kinds of values TOML has.
@@ -69,6 +71,14 @@ pub(super) struct Entry {
 }
 
 impl Node {
+    pub fn new(place: Place, value: Value) -> Self {
+        Self {
+            place,
+            value,
+            written: None,
+        }
+    }
+
     /// What the value is, for messages.
     pub fn kind(&self) -> &'static str {
         match &self.value {
@@ -97,7 +107,11 @@ impl Table {
 /// was made from an argument by putting something before it).
 pub(super) fn parse(text: &str, origin: usize, shift: usize) -> Result<Table, TomlError> {
     let document = Document::parse(text)?;
-    let reader = Reader { origin, shift };
+    let reader = Reader {
+        text,
+        origin,
+        shift,
+    };
     let root = Place {
         origin,
         start: 0,
@@ -106,12 +120,13 @@ pub(super) fn parse(text: &str, origin: usize, shift: usize) -> Result<Table, To
     Ok(reader.table(document.as_table(), root))
 }
 
-struct Reader {
+struct Reader<'a> {
+    text: &'a str,
     origin: usize,
     shift: usize,
 }
 
-impl Reader {
+impl Reader<'_> {
     fn place(&self, span: Option<std::ops::Range<usize>>, otherwise: Place) -> Place {
         span.map_or(otherwise, |span| Place {
             origin: self.origin,
@@ -147,19 +162,17 @@ impl Reader {
                     .iter()
                     .map(|table| {
                         let place = self.place(table.span(), place);
-                        Node {
-                            place,
-                            value: Value::Table(self.table(table, place)),
-                        }
+                        Node::new(place, Value::Table(self.table(table, place)))
                     })
                     .collect(),
             ),
         };
-        Some(Node { place, value })
+        Some(Node::new(place, value))
     }
 
     fn value(&self, value: &toml_edit::Value, key_place: Place) -> Node {
-        let place = self.place(value.span(), key_place);
+        let span = value.span();
+        let place = self.place(span.clone(), key_place);
         let value = match value {
             toml_edit::Value::String(text) => Value::Text(text.value().clone()),
             toml_edit::Value::Integer(number) => Value::Integer(*number.value()),
@@ -171,6 +184,13 @@ impl Reader {
             }
             toml_edit::Value::InlineTable(table) => Value::Table(self.table(table, place)),
         };
-        Node { place, value }
+        let scalar = matches!(value, Value::Integer(_) | Value::Float(_) | Value::Text(_));
+        let text = |span| self.text.get(span).map(Box::from);
+        let written = span.filter(|_| scalar).and_then(text);
+        Node {
+            place,
+            value,
+            written,
+        }
     }
 }

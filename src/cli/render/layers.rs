@@ -11,12 +11,13 @@ use etalon::film::{Channel, Picture, names};
 use etalon::render::Rendered;
 use etalon::render::bins::BinGrid;
 use etalon::shape::Query;
+use etalon::shape::implicit::certified::Workspace;
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::super::args::Render;
 use super::super::error::CommandError;
-use super::super::trace::{Decided, FirstHit, Target};
+use super::super::trace::{Decided, First, FirstHit, Target};
 use super::super::values::{Layer, SpectralRange};
 use super::job::Job;
 
@@ -120,7 +121,11 @@ fn first_hits(job: &Job) -> Result<Vec<Option<FirstHit>>, CommandError> {
                 t_min: 0.0,
                 t_max: f64::INFINITY,
             };
-            target.first_hit(&query, &mut Decided::default())
+            let mut workspace = Workspace::default();
+            match target.first_hit(&query, &mut workspace, &mut Decided::default()) {
+                First::Hit(hit) => Some(hit),
+                First::Nothing | First::Undecided(_) => None,
+            }
         })
         .collect())
 }

@@ -1,5 +1,7 @@
 //! From sums to channels and attributes.
 
+use std::fmt::Write as _;
+
 use etalon::film::provenance::Provenance;
 use etalon::film::{Attribute, Channel, Picture, names};
 use etalon::plan::choose::Precision;
@@ -149,7 +151,7 @@ fn rungs(outcome: &Outcome<'_>, job: &Job) -> String {
     };
     let ladder = rungs.ladder;
     let questions = ladder.double + ladder.double_double + ladder.exact;
-    format!(
+    let mut text = format!(
         "{} rays: {:.9} decided in lanes of {lanes}, {:.9} taken to the ladder; its {questions} \
          questions: {:.9} decided in f64, {:.9} in double-double, {:.9} exactly",
         rungs.rays,
@@ -158,5 +160,20 @@ fn rungs(outcome: &Outcome<'_>, job: &Job) -> String {
         share(ladder.double, questions),
         share(ladder.double_double, questions),
         share(ladder.exact, questions),
-    )
+    );
+    let implicit = rungs.implicit;
+    let rays = implicit.rays();
+    if rays > 0 {
+        let _ = write!(
+            text,
+            "; {rays} questions about implicit surfaces: {:.9} decided in f64, {:.9} in \
+             double-double, {:.9} exactly, {} undecided, {} not certified",
+            share(implicit.double, rays),
+            share(implicit.double_double, rays),
+            share(implicit.exact, rays),
+            implicit.undecided,
+            implicit.uncertified,
+        );
+    }
+    text
 }

@@ -1,7 +1,8 @@
 //! The scene as rays meet it.
 
 use etalon::scene::{Implicit, Named, Object, Scene, Shape, Surface};
-use etalon::shape::implicit::baseline::{ImplicitHit, PlacedImplicit};
+use etalon::shape::implicit::certified::{Tier, Workspace};
+use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
 use etalon::shape::{Placed, Query, ShapeKind, Start, Tally, nearest};
 use glam::DVec3;
 
@@ -28,6 +29,30 @@ pub struct FirstHit {
     pub point: DVec3,
     /// Unit outward normal in the world, where there is one.
     pub normal: Option<DVec3>,
+    /// How an implicit surface was found.
+    pub found: Option<Found>,
+}
+
+/// What a finder of implicit surfaces says besides t.
+pub struct Found {
+    /// Its name.
+    pub finder: &'static str,
+    /// Bounds of t.
+    pub enclosure: [f64; 2],
+    /// How many times t is a root, where that is known.
+    pub multiplicity: Option<u32>,
+    /// What decided; `None` where nothing is proved.
+    pub tier: Option<Tier>,
+}
+
+/// What is known of the first thing a ray meets.
+pub enum First {
+    /// It.
+    Hit(FirstHit),
+    /// There is none.
+    Nothing,
+    /// The finder of that name could not tell.
+    Undecided(&'static str),
 }
 
 /// Who has decided how many questions.
@@ -39,8 +64,10 @@ pub struct Decided {
     pub hits: u64,
     /// Certified shapes, by rung.
     pub ladder: Tally,
-    /// Implicit surfaces, by the baseline finder.
-    pub baseline: u64,
+    /// Rays that stay undecided.
+    pub undecided: u64,
+    /// Implicit surfaces, by arithmetic.
+    pub implicit: ImplicitTally,
 }
 
 impl Decided {
@@ -50,7 +77,8 @@ impl Decided {
             rays: self.rays + other.rays,
             hits: self.hits + other.hits,
             ladder: self.ladder.joined(other.ladder),
-            baseline: self.baseline + other.baseline,
+            undecided: self.undecided + other.undecided,
+            implicit: self.implicit.joined(other.implicit),
         }
     }
 }
@@ -88,26 +116,46 @@ impl Target {
     }
 
     /// The first hit of a ray.
-    pub fn first_hit(&self, query: &Query, decided: &mut Decided) -> Option<FirstHit> {
+    pub fn first_hit(
+        &self,
+        query: &Query,
+        workspace: &mut Workspace,
+        decided: &mut Decided,
+    ) -> First {
         let mut first = self.first_certified(query, &mut decided.ladder);
+        let mut undecided = None;
         for (object, implicit) in &self.implicit {
-            decided.baseline += 1;
-            let Some(ImplicitHit { t, point, normal }) = implicit.first_hit(query) else {
-                continue;
-            };
-            let hit = FirstHit {
-                object: *object,
-                t,
-                point,
-                normal,
-            };
-            if first.as_ref().is_none_or(|first| self.beats(&hit, first)) {
-                first = Some(hit);
+            let finder = implicit.finder().name();
+            match implicit.first_hit(query, workspace, &mut decided.implicit) {
+                ImplicitAnswer::Absent => {}
+                ImplicitAnswer::Undecided => undecided = Some(finder),
+                ImplicitAnswer::Found(found) => {
+                    let hit = FirstHit {
+                        object: *object,
+                        t: found.t,
+                        point: found.point,
+                        normal: found.normal,
+                        found: Some(Found {
+                            finder,
+                            enclosure: found.enclosure,
+                            multiplicity: found.multiplicity,
+                            tier: found.tier,
+                        }),
+                    };
+                    if first.as_ref().is_none_or(|first| self.beats(&hit, first)) {
+                        first = Some(hit);
+                    }
+                }
             }
         }
         decided.rays += 1;
+        // What could not be told may lie before what was found.
+        if let Some(finder) = undecided {
+            decided.undecided += 1;
+            return First::Undecided(finder);
+        }
         decided.hits += u64::from(first.is_some());
-        first
+        first.map_or(First::Nothing, First::Hit)
     }
 
     fn first_certified(&self, query: &Query, tally: &mut Tally) -> Option<FirstHit> {
@@ -119,6 +167,7 @@ impl Target {
             t: hit.t,
             point: hit.point,
             normal: Some(hit.normal),
+            found: None,
         })
     }
 

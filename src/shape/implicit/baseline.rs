@@ -9,62 +9,31 @@ use glam::DVec3;
 use crate::math::affine::Affine;
 use crate::math::double_double::DoubleDouble;
 use crate::math::number::{Number, power_of_two};
-use crate::scene::{Implicit, ImplicitSurface};
+use crate::scene::Implicit;
+use crate::shape::implicit::evaluate::Field;
+use crate::shape::implicit::normal;
 use crate::shape::ladder::{Ladder, ScaledRay};
-use crate::shape::{Query, SingularMatrix};
-
-/// The field at an object point, negative inside.
-pub fn field(surface: ImplicitSurface, p: DVec3) -> f64 {
-    let squared = p * p;
-    match surface {
-        ImplicitSurface::Heart => {
-            let s = squared.x + 2.25 * squared.y + squared.z - 1.0;
-            s * s * s - (squared.x + 9.0 / 80.0 * squared.y) * squared.z * p.z
-        }
-        ImplicitSurface::Mitchell => {
-            let (a, b) = (squared.x, squared.y + squared.z);
-            4.0 * (a * a + b * b) + 17.0 * a * b - 20.0 * (a + b) + 17.0
-        }
-    }
-}
-
-/// The field's gradient at an object point.
-pub fn gradient(surface: ImplicitSurface, p: DVec3) -> DVec3 {
-    let squared = p * p;
-    match surface {
-        ImplicitSurface::Heart => {
-            let s = squared.x + 2.25 * squared.y + squared.z - 1.0;
-            let (outer, cubed) = (6.0 * s * s, squared.z * p.z);
-            DVec3::new(
-                p.x * (outer - 2.0 * cubed),
-                p.y * (2.25 * outer - 9.0 / 40.0 * cubed),
-                p.z * outer - squared.z * (3.0 * squared.x + 27.0 / 80.0 * squared.y),
-            )
-        }
-        ImplicitSurface::Mitchell => {
-            let (a, b) = (squared.x, squared.y + squared.z);
-            let along = 16.0 * a + 34.0 * b - 40.0;
-            let across = 16.0 * b + 34.0 * a - 40.0;
-            p * DVec3::new(along, across, across)
-        }
-    }
-}
+use crate::shape::{Query, Ray, SingularMatrix};
 
 /// An implicit surface placed in the world.
 #[derive(Debug, Clone)]
-pub struct PlacedImplicit {
-    implicit: Implicit,
+pub struct SteppingFinder {
+    field: Field,
+    inside: [DVec3; 2],
+    steps: u32,
     ladder: Ladder,
+    to_world: Affine,
 }
 
 /// Where a ray meets an implicit surface, as far as the baseline finder can tell.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ImplicitHit {
+pub struct Stepped {
     /// Where on the ray, in units of its direction; finite.
     pub t: f64,
     /// World coordinates.
     pub point: DVec3,
-    /// Unit outward normal in the world; `None` where the gradient vanishes.
+    /// Unit outward normal in the world; see [`normal`] for where the gradient
+    /// vanishes.
     pub normal: Option<DVec3>,
 }
 
@@ -81,21 +50,24 @@ impl Line {
     }
 }
 
-impl PlacedImplicit {
+impl SteppingFinder {
     /// Places the surface.
     ///
     /// # Errors
     /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
     pub fn new(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
         Ok(Self {
-            implicit: implicit.clone(),
+            field: Field::new(&implicit.field.tape),
+            inside: implicit.inside,
+            steps: implicit.steps,
             ladder: Ladder::new(to_world)?,
+            to_world: *to_world,
         })
     }
 
     /// The first zero of the field, or change of its sign between two steps, with `t_min` < t <
     /// `t_max` inside the clip box; t = 0 counts where `t_min` is 0.
-    pub fn first_hit(&self, query: &Query) -> Option<ImplicitHit> {
+    pub fn first_hit(&self, query: &Query) -> Option<Stepped> {
         if !query.ray.is_valid() {
             return None;
         }
@@ -106,9 +78,37 @@ impl PlacedImplicit {
         let limits = [query.t_min * unit, query.t_max * unit];
         let scaled_t = self.first_root(&line, limits, query.t_min == 0.0)?;
         let t = scaled_t / unit;
-        let normal = self.normal(line.at(scaled_t));
+        let normal = self.normal(line.at(scaled_t), line.direction);
         let point = query.ray.origin + query.ray.direction * t;
-        (t.is_finite() && point.is_finite()).then_some(ImplicitHit { t, point, normal })
+        (t.is_finite() && point.is_finite()).then_some(Stepped { t, point, normal })
+    }
+
+    /// The unit outward normal, in the world, of a hit at t.
+    pub fn normal_at(&self, ray: &Ray, t: f64) -> Option<DVec3> {
+        let ray = ScaledRay::new(ray);
+        let line = self.local(&ray);
+        self.normal(line.at(t * power_of_two(ray.exponent())), line.direction)
+    }
+
+    /// The point, in the world, of a hit at t. From a far origin o + t d is off by the rounding of its
+    /// large terms, so it is moved back onto the surface by a Newton step along the gradient; where
+    /// the gradient says nothing the point stays where it is.
+    pub fn point_at(&self, ray: &Ray, t: f64) -> DVec3 {
+        let plain = ray.origin + ray.direction * t;
+        let scaled = ScaledRay::new(ray);
+        let line = self.local(&scaled);
+        let scaled_t = t * power_of_two(scaled.exponent());
+        let local = line.at(scaled_t);
+        let gradient = self.field.gradient(local);
+        let step = gradient * (self.field.value(local) / gradient.length_squared());
+        // Eight unit roundoffs of the terms pay for their own rounding, that of t and of the map.
+        let terms = line.origin.abs() + (line.direction * scaled_t).abs();
+        let blur = 4.0 * f64::EPSILON * terms.max_element();
+        if step.length() <= blur {
+            self.to_world.point(local - step)
+        } else {
+            plain
+        }
     }
 
     /// The ray in object coordinates, rounded once from double-double.
@@ -126,16 +126,16 @@ impl PlacedImplicit {
     fn first_root(&self, line: &Line, limits: [f64; 2], from_zero: bool) -> Option<f64> {
         let [t_min, t_max] = limits;
         let [near, far] = self.clip(line, limits)?;
-        let value = |t: f64| field(self.implicit.surface, line.at(t));
+        let value = |t: f64| self.field.value(line.at(t));
         let first = value(near);
         if first == 0.0 && (near > t_min || from_zero) {
             return (near < t_max).then_some(near);
         }
         let negative = first < 0.0;
-        let step = (far - near) / f64::from(self.implicit.steps);
+        let step = (far - near) / f64::from(self.steps);
         let mut low = near;
-        for i in 1..=self.implicit.steps {
-            let high = if i == self.implicit.steps {
+        for i in 1..=self.steps {
+            let high = if i == self.steps {
                 far
             } else {
                 near + step * f64::from(i)
@@ -151,7 +151,7 @@ impl PlacedImplicit {
 
     /// The part of the line within the closed clip box and the limits.
     fn clip(&self, line: &Line, [mut near, mut far]: [f64; 2]) -> Option<[f64; 2]> {
-        let [lower, upper] = self.implicit.inside;
+        let [lower, upper] = self.inside;
         for axis in 0..3 {
             let (o, d) = (line.origin[axis], line.direction[axis]);
             if d == 0.0 {
@@ -168,8 +168,9 @@ impl PlacedImplicit {
     }
 
     /// Normals go by the inverse transpose; the adjugate has the sign that keeps them outward.
-    fn normal(&self, point: DVec3) -> Option<DVec3> {
-        let gradient = gradient(self.implicit.surface, point);
+    fn normal(&self, point: DVec3, direction: DVec3) -> Option<DVec3> {
+        let size = (self.inside[1] - self.inside[0]).max_element();
+        let gradient = normal::outward(&self.field, point, direction, size);
         let rows = self.ladder.double_double.adjugate.each_ref();
         let rows = rows.map(|row| DVec3::from_array(row.each_ref().map(Number::to_f64)));
         let normal = rows[0] * gradient.x + rows[1] * gradient.y + rows[2] * gradient.z;

@@ -132,6 +132,7 @@ impl Tape {
     }
 
     /// The field in an arithmetic; `None` for an empty tape. `results` is scratch space.
+    #[inline(always)]
     pub fn evaluate<A: Algebra>(
         &self,
         algebra: &A,

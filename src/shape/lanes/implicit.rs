@@ -1,27 +1,50 @@
-//! Implicit surfaces in lanes, by the report's own method.
+//! Implicit surfaces in lanes.
 //!
-//! The baseline finder: equal steps along the clipped ray, a change of sign, bisection. It proves
-//! nothing; a pair of roots within one step is missed. It stays as the yardstick for certified
-//! finders.
+//! Polynomials go to the certified finder, whatever the precision of the loop, in packets of
+//! eight. The baseline finder is the report's own method: equal steps along the clipped ray, a change
+//! of sign, bisection. It proves nothing; a pair of roots within one step is missed. It stays as the
+//! yardstick for certified finders.
 
+use std::cell::RefCell;
+
+use fearless_simd::Level;
 use glam::DVec3;
 
 use crate::math::affine::Affine;
-use crate::math::lanes::{Lanes, Mask, Real, Scalar};
+use crate::math::lanes::{Lanes, Mask, Real, Scalar, WIDEST, inlined};
 use crate::math::vec3::{Rows, Vec3};
-use crate::scene::ImplicitSurface;
+use crate::scene::Implicit;
+use crate::shape::SingularMatrix;
+use crate::shape::implicit::certified::{Packet, WIDTH, Workspace};
+use crate::shape::implicit::evaluate::Field;
+use crate::shape::implicit::normal;
+use crate::shape::implicit::placed::{Finder, ImplicitTally};
 
 use super::LaneRay;
+use super::field::{LaneField, Scratch, each};
 
 /// An implicit surface placed in the world.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct LaneImplicit<T> {
-    surface: ImplicitSurface,
+    field: LaneField<T>,
+    /// The field in f64 and the size of the box, for normals where the gradient vanishes.
+    scalar: Field,
+    size: f64,
     centre: [T; 3],
     half: [T; 3],
     steps: u32,
     inverse: Rows<T>,
+    finder: Finder,
+    level: Level,
 }
+
+thread_local! {
+    /// Room for the forms of a packet, once a thread.
+    static WORKSPACE: RefCell<Workspace> = RefCell::default();
+}
+
+/// Steps taken at once: reading a tape costs about as much as three operations of its own.
+const STRIDE: usize = 4;
 
 /// What a ray that starts on the surface knows: which sign the field has just after the start.
 #[derive(Clone, Copy)]
@@ -34,61 +57,90 @@ pub struct StartSign<L: Lanes> {
 
 impl<T: Scalar> LaneImplicit<T> {
     /// Rounds a placement: clip box in object coordinates, world → object map.
-    pub fn new(surface: ImplicitSurface, inside: [DVec3; 2], steps: u32, inverse: &Affine) -> Self {
+    ///
+    /// # Errors
+    /// [`SingularMatrix`] where the matrix cannot be inverted.
+    pub fn new(
+        implicit: &Implicit,
+        to_world: &Affine,
+        inverse: &Affine,
+    ) -> Result<Self, SingularMatrix> {
+        let inside = implicit.inside;
         let centre = (inside[0] + inside[1]) / 2.0;
         let half = (inside[1] - inside[0]) / 2.0;
-        Self {
-            surface,
+        Ok(Self {
+            field: LaneField::new(&implicit.field.tape),
+            scalar: Field::new(&implicit.field.tape),
+            size: (inside[1] - inside[0]).max_element(),
             centre: centre.to_array().map(T::from_f64),
             half: half.to_array().map(T::from_f64),
-            steps,
+            steps: implicit.steps,
             inverse: Rows::from_f64(&inverse.rows),
+            finder: Finder::new(implicit, to_world)?,
+            level: Level::new(),
+        })
+    }
+
+    /// How hits are found.
+    pub fn finder(&self) -> &Finder {
+        &self.finder
+    }
+
+    /// The first hits before `limit`; where the mask is false, none is known.
+    #[inline(always)]
+    pub fn first_hit<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        ray: &LaneRay<L>,
+        start: StartSign<L>,
+        limit: L::Real,
+        active: L::Mask,
+        tally: &mut ImplicitTally,
+    ) -> (L::Real, L::Mask) {
+        match &self.finder {
+            Finder::SignChange => {
+                tally.uncertified += u64::from(active.bits().count_ones());
+                self.first_change(l, ray, start, limit, active)
+            }
+            finder => {
+                let rays = PacketRays::new(l, ray, limit);
+                let bits = [active.bits(), start.on.bits()];
+                let (t, found) = rays.ask(finder, self.level, bits, L::COUNT, tally);
+                (l.load(&t), l.mask_from_bits(found))
+            }
         }
     }
 
-    /// The field at object points, negative inside.
+    /// Outward normals at object points that are met in these directions: the gradient, of any
+    /// length; where it vanishes, the unit normal that [`normal::outward`] finds.
     #[inline(always)]
-    pub fn field<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> L::Real {
-        let (xx, yy, zz) = (p.x * p.x, p.y * p.y, p.z * p.z);
-        match self.surface {
-            ImplicitSurface::Heart => {
-                let s = xx + yy * l.real(2.25) + zz - l.real(1.0);
-                let cubic = zz * p.z;
-                s * s * s - xx * cubic - yy * cubic * l.real(9.0 / 80.0)
-            }
-            ImplicitSurface::Mitchell => {
-                let w = yy + zz;
-                (xx * xx + w * w) * l.real(4.0) + xx * w * l.real(17.0) - (xx + w) * l.real(20.0)
-                    + l.real(17.0)
-            }
+    pub fn normal<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        p: Vec3<L::Real>,
+        direction: Vec3<L::Real>,
+        here: L::Mask,
+    ) -> Vec3<L::Real> {
+        let mut gradient = self.field.gradient(l, p);
+        let square = gradient.length_squared();
+        let defined = square.gt(l.real(0.0)) & square.lt(l.real(f64::INFINITY));
+        let mut missing = (here & !defined).bits();
+        while missing != 0 {
+            let i = missing.trailing_zeros() as usize;
+            missing &= missing - 1;
+            let lane = |v: Vec3<L::Real>| {
+                let [x, y, z] = [v.x, v.y, v.z].map(|x| l.lane(x, i).to_f64());
+                DVec3::new(x, y, z)
+            };
+            let normal = normal::outward(&self.scalar, lane(p), lane(direction), self.size);
+            let put = |x: L::Real, value: f64| l.with_lane(x, i, T::from_f64(value));
+            gradient = Vec3::new(
+                put(gradient.x, normal.x),
+                put(gradient.y, normal.y),
+                put(gradient.z, normal.z),
+            );
         }
-    }
-
-    /// Its gradient.
-    #[inline(always)]
-    pub fn gradient<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> Vec3<L::Real> {
-        let (xx, yy, zz) = (p.x * p.x, p.y * p.y, p.z * p.z);
-        match self.surface {
-            ImplicitSurface::Heart => {
-                let s = xx + yy * l.real(2.25) + zz - l.real(1.0);
-                let six = s * s * l.real(6.0);
-                let cubic = zz * p.z;
-                Vec3::new(
-                    (six - cubic * l.real(2.0)) * p.x,
-                    (six * l.real(2.25) - cubic * l.real(9.0 / 40.0)) * p.y,
-                    six * p.z - (xx * l.real(3.0) + yy * l.real(27.0 / 80.0)) * zz,
-                )
-            }
-            ImplicitSurface::Mitchell => {
-                let w = yy + zz;
-                let across = xx * l.real(34.0) + w * l.real(16.0) - l.real(40.0);
-                Vec3::new(
-                    (xx * l.real(16.0) + w * l.real(34.0) - l.real(40.0)) * p.x,
-                    across * p.y,
-                    across * p.z,
-                )
-            }
-        }
+        gradient
     }
 
     /// The first sign change along each ray before `limit`; where the mask is false, none.
@@ -125,23 +177,45 @@ impl<T: Scalar> LaneImplicit<T> {
                 if !clipped.any() {
                     return (near, found);
                 }
+                let mut scratch = Scratch::<L, 1>::default();
+                let mut value = inlined(
+                    #[inline(always)]
+                    |p| self.field.values(l, [p], &mut scratch)[0],
+                );
+                let mut scratch = Scratch::<L, STRIDE>::default();
                 let step = (far - near) * l.real(1.0 / f64::from(self.steps));
-                let mut negative = self.field(l, o.along(d, near)).lt(zero);
+                let mut negative = value(o.along(d, near)).lt(zero);
                 // On the surface the field's sign at the start is rounding noise, its sign after it known.
                 negative = (negative & !start.on) | (start.inward & start.on);
                 let mut t = near;
-                for i in 1..=self.steps {
-                    let next = step.mul_add(l.real(f64::from(i)), near);
-                    let change_to = self.field(l, o.along(d, next)).lt(zero);
-                    let changed =
-                        ((change_to & !negative) | (negative & !change_to)) & clipped & !found;
-                    low = l.select(changed, t, low);
-                    high = l.select(changed, next, high);
-                    found = found | changed;
+                for first in (1..=self.steps).step_by(STRIDE) {
+                    let steps: [L::Real; STRIDE] = each(
+                        zero,
+                        #[inline(always)]
+                        |i| {
+                            // Beyond the last step it is asked again, which changes nothing.
+                            let number = (first + i as u32).min(self.steps);
+                            step.mul_add(l.real(f64::from(number)), near)
+                        },
+                    );
+                    let points: [Vec3<L::Real>; STRIDE] = each(
+                        o,
+                        #[inline(always)]
+                        |i: usize| o.along(d, steps[i]),
+                    );
+                    let values = self.field.values(l, points, &mut scratch);
+                    for (next, value) in steps.into_iter().zip(values) {
+                        let change_to = value.lt(zero);
+                        let changed =
+                            ((change_to & !negative) | (negative & !change_to)) & clipped & !found;
+                        low = l.select(changed, t, low);
+                        high = l.select(changed, next, high);
+                        found = found | changed;
+                        t = next;
+                    }
                     if !(clipped & !found).any() {
                         break;
                     }
-                    t = next;
                 }
                 if !found.any() {
                     return (near, found);
@@ -149,7 +223,7 @@ impl<T: Scalar> LaneImplicit<T> {
                 // Half the step as often as the significand has bits.
                 for _ in 0..L::UNIFORM_BITS.max(24) {
                     let middle = (low + high) * l.real(0.5);
-                    let inside = self.field(l, o.along(d, middle)).lt(zero);
+                    let inside = value(o.along(d, middle)).lt(zero);
                     let same = (inside & negative) | (!inside & !negative);
                     low = l.select(same, middle, low);
                     high = l.select(same, high, middle);
@@ -157,5 +231,77 @@ impl<T: Scalar> LaneImplicit<T> {
                 ((low + high) * l.real(0.5), found)
             },
         )
+    }
+}
+
+/// The rays of a packet as memory.
+struct PacketRays<T> {
+    origin: [[T; WIDEST]; 3],
+    direction: [[T; WIDEST]; 3],
+    limit: [T; WIDEST],
+}
+
+impl<T: Scalar> PacketRays<T> {
+    #[inline(always)]
+    fn new<L: Lanes<Scalar = T>>(l: L, ray: &LaneRay<L>, limit: L::Real) -> Self {
+        let stored = inlined(
+            #[inline(always)]
+            |x: L::Real| {
+                let mut to = [T::default(); WIDEST];
+                l.store(x, &mut to);
+                to
+            },
+        );
+        let vector = inlined(
+            #[inline(always)]
+            |v: Vec3<L::Real>| [stored(v.x), stored(v.y), stored(v.z)],
+        );
+        Self {
+            origin: vector(ray.origin),
+            direction: vector(ray.direction),
+            limit: stored(limit),
+        }
+    }
+
+    /// Asks a finder that proves its answers, eight rays at a time: `active` and `leaving` rays by bit.
+    #[inline(never)]
+    fn ask(
+        &self,
+        finder: &Finder,
+        level: Level,
+        [active, leaving]: [u32; 2],
+        count: usize,
+        tally: &mut ImplicitTally,
+    ) -> ([T; WIDEST], u32) {
+        let mut t = [T::default(); WIDEST];
+        let mut found = 0;
+        for base in (0..count).step_by(WIDTH) {
+            let mut packet = Packet {
+                active: active >> base & 0xff,
+                leaving: leaving >> base & 0xff,
+                roundoff: T::ROUNDOFF,
+                ..Packet::default()
+            };
+            if packet.active == 0 {
+                continue;
+            }
+            for lane in 0..WIDTH {
+                for axis in 0..3 {
+                    packet.origin[axis][lane] = self.origin[axis][base + lane].to_f64();
+                    packet.direction[axis][lane] = self.direction[axis][base + lane].to_f64();
+                }
+                packet.t_max[lane] = self.limit[base + lane].to_f64();
+            }
+            let answers = WORKSPACE
+                .with_borrow_mut(|workspace| finder.first_hits(level, &packet, false, workspace));
+            let answers = answers.unwrap_or_default();
+            let decided = answers.found | answers.absent;
+            for lane in (0..WIDTH).filter(|lane| packet.active >> lane & 1 == 1) {
+                t[base + lane] = T::from_f64(answers.t[lane]);
+                tally.count((decided >> lane & 1 == 1).then_some(answers.tiers[lane]));
+            }
+            found |= (answers.found & packet.active) << base;
+        }
+        (t, found)
     }
 }

@@ -1,0 +1,177 @@
+//! Automatic differentiation over intervals: a value and its derivative along a line.
+//!
+//! The derivative holds every slope that the function has in the interval, and between the
+//! slopes on both sides where it has a kink (|x|, minimum, maximum): what the mean value theorem
+//! needs of a Lipschitz function (Clarke 1983, *Optimization and Nonsmooth Analysis*, ch. 2.3).
+
+use super::instructions::DoubleLanes;
+use super::interval::{Domain, Interval};
+use super::lanes::Real;
+
+/// A value and its derivative.
+#[derive(Clone, Copy)]
+pub struct Jet<L: DoubleLanes> {
+    /// The value.
+    pub value: Interval<L>,
+    /// The derivative.
+    pub slope: Interval<L>,
+}
+
+impl<L: DoubleLanes> Jet<L> {
+    /// A number.
+    #[inline(always)]
+    pub fn constant(value: Interval<L>) -> Self {
+        let slope = Interval::splat(value.lanes, [0.0, 0.0]);
+        Self { value, slope }
+    }
+
+    /// −a.
+    #[inline(always)]
+    pub fn negated(self) -> Self {
+        Self {
+            value: -self.value,
+            slope: -self.slope,
+        }
+    }
+
+    /// a + b.
+    #[inline(always)]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            slope: self.slope + other.slope,
+        }
+    }
+
+    /// a − b.
+    #[inline(always)]
+    pub fn minus(self, other: Self) -> Self {
+        Self {
+            value: self.value - other.value,
+            slope: self.slope - other.slope,
+        }
+    }
+
+    /// a · b.
+    #[inline(always)]
+    pub fn times(self, other: Self) -> Self {
+        Self {
+            value: self.value * other.value,
+            slope: self.slope * other.value + self.value * other.slope,
+        }
+    }
+
+    /// a + c for a constant.
+    #[inline(always)]
+    pub fn plus_constant(self, c: Interval<L>) -> Self {
+        Self {
+            value: self.value + c,
+            slope: self.slope,
+        }
+    }
+
+    /// a · c for a number c.
+    #[inline(always)]
+    pub fn times_number(self, c: f64) -> Self {
+        Self {
+            value: self.value.times_number(c),
+            slope: self.slope.times_number(c),
+        }
+    }
+
+    /// a / b.
+    #[inline(always)]
+    pub fn quotient(self, other: Self, domain: &mut Domain<L>) -> Self {
+        let value = self.value.quotient_noted(other.value, domain);
+        Self {
+            value,
+            slope: (self.slope - value * other.slope) / other.value,
+        }
+    }
+
+    /// a value with slope a′ · `rate`.
+    #[inline(always)]
+    pub fn chained(self, value: Interval<L>, rate: Interval<L>) -> Self {
+        Self {
+            value,
+            slope: self.slope * rate,
+        }
+    }
+
+    /// a².
+    #[inline(always)]
+    pub fn squared(self) -> Self {
+        self.chained(self.value.squared(), self.value.times_number(2.0))
+    }
+
+    /// aⁿ.
+    #[inline(always)]
+    pub fn whole_power(self, n: i32, domain: &mut Domain<L>) -> Self {
+        if n < 0 {
+            let zero = self.value.lanes.real(0.0);
+            let nothing = self.value.low.same(zero) & self.value.high.same(zero);
+            domain.note(self.value.may_be_zero(), nothing);
+        }
+        let rate = match n {
+            0 => Interval::splat(self.value.lanes, [0.0, 0.0]),
+            // One less than the smallest exponent is no i32.
+            i32::MIN => Interval::whole(self.value.lanes),
+            _ => self.value.whole_power(n - 1).times_number(f64::from(n)),
+        };
+        self.chained(self.value.whole_power(n), rate)
+    }
+
+    /// |a|.
+    #[inline(always)]
+    pub fn absolute(self) -> Self {
+        let l = self.value.lanes;
+        let zero = l.real(0.0);
+        let magnitude = self.slope.magnitude();
+        let kink = Interval::new(l, -magnitude, magnitude);
+        let smooth = (-self.slope).or_where_not(self.value.high.lt(zero), self.slope);
+        Self {
+            value: self.value.absolute(),
+            slope: kink.or_where_not(self.value.may_be_zero(), smooth),
+        }
+    }
+
+    /// The smaller of two.
+    #[inline(always)]
+    pub fn smaller(self, other: Self) -> Self {
+        let both = self.slope.hull(other.slope);
+        let slope = self
+            .slope
+            .or_where_not(self.value.high.lt(other.value.low), both);
+        Self {
+            value: self.value.smaller(other.value),
+            slope: other
+                .slope
+                .or_where_not(other.value.high.lt(self.value.low), slope),
+        }
+    }
+
+    /// The larger of two.
+    #[inline(always)]
+    pub fn larger(self, other: Self) -> Self {
+        self.negated().smaller(other.negated()).negated()
+    }
+
+    /// Slope of the angle of the point (other, self): (x y′ − y x′)/(x² + y²).
+    #[inline(always)]
+    pub fn slope_of_angle(self, other: Self) -> Interval<L> {
+        let turn = other.value * self.slope - self.value * other.slope;
+        turn / (other.value.squared() + self.value.squared())
+    }
+
+    /// Slope of aᵇ from its value and ln a: aᵇ (b′ ln a + b a′/a).
+    #[inline(always)]
+    pub fn slope_of_power(
+        self,
+        exponent: Self,
+        power: Interval<L>,
+        logarithm: Interval<L>,
+    ) -> Interval<L> {
+        let rate = exponent.slope * logarithm + exponent.value * self.slope / self.value;
+        power * rate
+    }
+}

@@ -1,0 +1,208 @@
+//! Numbers of one or two f64 a lane, with what their rounding costs at most.
+
+use super::lanes::{Lanes, Real};
+
+/// Eight f64, as memory keeps them.
+#[derive(Debug, Clone, Copy, Default)]
+#[repr(align(64))]
+pub struct Row(pub [f64; 8]);
+
+/// A number of one or two f64 a lane.
+pub trait Word<L: Lanes<Scalar = f64>>: Copy {
+    /// How many rows it takes.
+    const ROWS: usize;
+    /// Error of a sum or product, relative to the sum or product of the operands' magnitudes.
+    const UNIT: f64;
+    /// From f64.
+    fn real(l: L, x: L::Real) -> Self;
+    /// The same constant, given as a sum, in every lane.
+    fn constant(l: L, parts: [f64; 2]) -> Self;
+    /// self + other.
+    fn plus(self, other: Self) -> Self;
+    /// self − other.
+    fn minus(self, other: Self) -> Self;
+    /// self · other.
+    fn times(self, other: Self) -> Self;
+    /// self · x.
+    fn times_real(self, x: L::Real) -> Self;
+    /// self · a + b.
+    fn fused(self, a: Self, b: Self) -> Self;
+    /// The nearest f64.
+    fn head(self) -> L::Real;
+    /// self where the mask is true, else other.
+    fn select(l: L, mask: L::Mask, a: Self, b: Self) -> Self;
+    /// The `i`th number of the rows.
+    fn load(l: L, rows: &[Row], i: usize) -> Self;
+    /// Puts the number in the `i`th place.
+    fn store(self, l: L, rows: &mut [Row], i: usize);
+}
+
+/// One f64.
+#[derive(Clone, Copy)]
+pub struct Plain<L: Lanes>(pub L::Real);
+
+/// An unevaluated sum of two f64, the second at most half a unit in the last place of the first.
+///
+/// Sums take the exact sum of the high words and add the low ones to its error; three roundings of
+/// numbers below 2u (|a| + |b|) and the exact renormalisation cost less than 4u² (|a| + |b|).
+/// Products leave out the product of the low words, u² |a b|, and round sums below u, 2u and
+/// 3u |a b|: less than 8u² |a b| together (Joldes, Muller, Popescu 2017, algorithms 5 and 12, with
+/// bounds in the magnitudes of the operands, which is what sums of majorants need).
+#[derive(Clone, Copy)]
+pub struct Pair<L: Lanes> {
+    high: L::Real,
+    low: L::Real,
+}
+
+impl<L: Lanes<Scalar = f64>> Word<L> for Plain<L> {
+    const ROWS: usize = 1;
+    const UNIT: f64 = f64::EPSILON / 2.0;
+    #[inline(always)]
+    fn real(_: L, x: L::Real) -> Self {
+        Self(x)
+    }
+    #[inline(always)]
+    fn constant(l: L, parts: [f64; 2]) -> Self {
+        Self(l.real(parts[0]))
+    }
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+    #[inline(always)]
+    fn minus(self, other: Self) -> Self {
+        Self(self.0 - other.0)
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        Self(self.0 * other.0)
+    }
+    #[inline(always)]
+    fn times_real(self, x: L::Real) -> Self {
+        Self(self.0 * x)
+    }
+    #[inline(always)]
+    fn fused(self, a: Self, b: Self) -> Self {
+        Self(self.0.mul_add(a.0, b.0))
+    }
+    #[inline(always)]
+    fn head(self) -> L::Real {
+        self.0
+    }
+    #[inline(always)]
+    fn select(l: L, mask: L::Mask, a: Self, b: Self) -> Self {
+        Self(l.select(mask, a.0, b.0))
+    }
+    #[inline(always)]
+    fn load(l: L, rows: &[Row], i: usize) -> Self {
+        Self(l.load(&rows[i].0))
+    }
+    #[inline(always)]
+    fn store(self, l: L, rows: &mut [Row], i: usize) {
+        l.store(self.0, &mut rows[i].0);
+    }
+}
+
+impl<L: Lanes<Scalar = f64>> Pair<L> {
+    /// high + low as a normalised pair.
+    #[inline(always)]
+    pub fn normalised(high: L::Real, low: L::Real) -> Self {
+        let (high, low) = two_sum::<L>(high, low);
+        Self { high, low }
+    }
+
+    /// The low word.
+    #[inline(always)]
+    pub fn tail(self) -> L::Real {
+        self.low
+    }
+}
+
+/// a + b = s + e exactly (Knuth 1969).
+#[inline(always)]
+fn two_sum<L: Lanes>(a: L::Real, b: L::Real) -> (L::Real, L::Real) {
+    let s = a + b;
+    let part = s - a;
+    (s, (a - (s - part)) + (b - part))
+}
+
+impl<L: Lanes<Scalar = f64>> Word<L> for Pair<L> {
+    const ROWS: usize = 2;
+    const UNIT: f64 = 2.0 * f64::EPSILON * f64::EPSILON;
+    #[inline(always)]
+    fn real(l: L, x: L::Real) -> Self {
+        Self {
+            high: x,
+            low: l.real(0.0),
+        }
+    }
+    #[inline(always)]
+    fn constant(l: L, parts: [f64; 2]) -> Self {
+        Self {
+            high: l.real(parts[0]),
+            low: l.real(parts[1]),
+        }
+    }
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        let (s, e) = two_sum::<L>(self.high, other.high);
+        Self::normalised(s, e + (self.low + other.low))
+    }
+    #[inline(always)]
+    fn minus(self, other: Self) -> Self {
+        self.plus(Self {
+            high: -other.high,
+            low: -other.low,
+        })
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        let p = self.high * other.high;
+        let e = self.high.mul_add(other.high, -p);
+        let e = self.high.mul_add(other.low, e);
+        let e = self.low.mul_add(other.high, e);
+        // |e| ≤ 3u |p|: the fast renormalisation is exact (Dekker 1971).
+        let high = p + e;
+        Self {
+            high,
+            low: e - (high - p),
+        }
+    }
+    #[inline(always)]
+    fn times_real(self, x: L::Real) -> Self {
+        let p = self.high * x;
+        let e = self.low.mul_add(x, self.high.mul_add(x, -p));
+        let high = p + e;
+        Self {
+            high,
+            low: e - (high - p),
+        }
+    }
+    #[inline(always)]
+    fn fused(self, a: Self, b: Self) -> Self {
+        self.times(a).plus(b)
+    }
+    #[inline(always)]
+    fn head(self) -> L::Real {
+        self.high
+    }
+    #[inline(always)]
+    fn select(l: L, mask: L::Mask, a: Self, b: Self) -> Self {
+        Self {
+            high: l.select(mask, a.high, b.high),
+            low: l.select(mask, a.low, b.low),
+        }
+    }
+    #[inline(always)]
+    fn load(l: L, rows: &[Row], i: usize) -> Self {
+        Self {
+            high: l.load(&rows[2 * i].0),
+            low: l.load(&rows[2 * i + 1].0),
+        }
+    }
+    #[inline(always)]
+    fn store(self, l: L, rows: &mut [Row], i: usize) {
+        l.store(self.high, &mut rows[2 * i].0);
+        l.store(self.low, &mut rows[2 * i + 1].0);
+    }
+}

@@ -1,0 +1,371 @@
+//! Polynomial surfaces with proved hits, in tiers: f64 lanes, double-double lanes, exact integers.
+//!
+//! The ray is clipped to a box outside of which the surface has proved not to be, the field formed
+//! as Bernstein coefficients between the two ends, and the first root isolated with certain signs
+//! ([`crate::root::bernstein`]). One number a ray bounds the coefficients' errors: a constant of
+//! the surface (see [`super::program::bounds`]), and another one times the distance between the
+//! rounded local ends and the exact ones. Rays that f64 leaves undecided are asked again in
+//! double-double, and the rest exactly.
+
+mod exact;
+mod kernel;
+mod outer;
+mod place;
+
+use fearless_simd::Level;
+use glam::DVec3;
+
+pub use place::{Certified, Limits};
+
+use crate::math::lanes::{Double, Lanes};
+use crate::math::number::{binary_exponent, power_of_two};
+use crate::math::words::{Pair, Plain, Row};
+use crate::shape::Ray;
+use exact::ExactStart;
+
+/// Lanes of a packet.
+pub const WIDTH: usize = 8;
+
+/// Eight rays and where on them hits count.
+#[derive(Debug, Clone, Copy)]
+pub struct Packet {
+    /// World coordinates, by axis.
+    pub origin: [[f64; WIDTH]; 3],
+    /// By axis; any length but zero.
+    pub direction: [[f64; WIDTH]; 3],
+    /// Hits count after this, and at it where it is 0.
+    pub t_min: [f64; WIDTH],
+    /// Hits count before this.
+    pub t_max: [f64; WIDTH],
+    /// Rays that are asked about, by bit.
+    pub active: u32,
+    /// Rays that leave this very surface: `t_min` is 0 and the root there does not count.
+    pub leaving: u32,
+    /// Unit roundoff with which the origins of these were rounded.
+    pub roundoff: f64,
+    /// How many times `t_max` is known to be a root of the only factor, in all lanes.
+    pub roots_at_end: usize,
+}
+
+impl Default for Packet {
+    fn default() -> Self {
+        Self {
+            origin: [[0.0; WIDTH]; 3],
+            direction: [[1.0; WIDTH]; 3],
+            t_min: [0.0; WIDTH],
+            t_max: [f64::INFINITY; WIDTH],
+            active: 0,
+            leaving: 0,
+            roundoff: f64::EPSILON / 2.0,
+            roots_at_end: 0,
+        }
+    }
+}
+
+impl Packet {
+    /// Puts a ray in a lane.
+    pub fn set(&mut self, lane: usize, origin: DVec3, direction: DVec3, limits: [f64; 2]) {
+        for axis in 0..3 {
+            self.origin[axis][lane] = origin[axis];
+            self.direction[axis][lane] = direction[axis];
+        }
+        [self.t_min[lane], self.t_max[lane]] = limits;
+        self.active |= 1 << lane;
+    }
+
+    /// The ray in a lane.
+    fn ray(&self, lane: usize) -> Ray {
+        let at = |v: &[[f64; WIDTH]; 3]| DVec3::from_array(v.map(|axis| axis[lane]));
+        Ray {
+            origin: at(&self.origin),
+            direction: at(&self.direction),
+        }
+    }
+}
+
+/// Which arithmetic has decided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum Tier {
+    /// f64 in lanes.
+    #[default]
+    Double,
+    /// Double-double in lanes.
+    DoubleDouble,
+    /// Exact integers.
+    Exact,
+}
+
+/// What is known of the first hits.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Answers {
+    /// There is one.
+    pub found: u32,
+    /// There is none.
+    pub absent: u32,
+    /// Its t, in units of the direction.
+    pub t: [f64; WIDTH],
+    /// It is not before this.
+    pub low: [f64; WIDTH],
+    /// Nor after this.
+    pub high: [f64; WIDTH],
+    /// How many times it is a root; 0 where that is not known.
+    pub multiplicity: [u32; WIDTH],
+    /// What has decided.
+    pub tiers: [Tier; WIDTH],
+    /// Lanes whose enclosure is wider than [`SHARP`] times the clipped stretch.
+    blurred: u32,
+    /// Where the search ended in undecided lanes.
+    doubt: [f64; WIDTH],
+    /// Length of the clipped stretch.
+    stretch: [f64; WIDTH],
+}
+
+/// Width of an enclosure that counts as sharp, relative to the clipped stretch of the ray: half of
+/// it is what t may be off by.
+pub const SHARP: f64 = 1e-12;
+
+/// What an answer should be like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wish {
+    /// Enclosures that f64 leaves blurred are sharpened in double-double.
+    pub sharp: bool,
+    /// What double-double leaves undecided is decided exactly.
+    pub exact: bool,
+}
+
+/// Room for the forms of a packet.
+#[derive(Debug, Default)]
+pub struct Workspace {
+    rows: Vec<Row>,
+}
+
+/// Lanes of f64 × 8, which the kernels are compiled for.
+pub trait DoubleLanes: Lanes<Scalar = f64> {}
+impl<L: Lanes<Scalar = f64>> DoubleLanes for L {}
+
+impl Certified {
+    /// The first hits of a packet, by the cheapest arithmetic that is certain of each.
+    pub fn first_hits(
+        &self,
+        level: Level,
+        packet: &Packet,
+        wish: Wish,
+        workspace: &mut Workspace,
+    ) -> Answers {
+        let mut answers = self.in_lanes(level, packet, packet.active, false, workspace);
+        let mut open = packet.active & !(answers.found | answers.absent);
+        let blurred = if wish.sharp {
+            answers.blurred & answers.found
+        } else {
+            0
+        };
+        let again = open | blurred;
+        if again != 0 {
+            let sharper = self.in_lanes(level, packet, again, true, workspace);
+            let decided = sharper.found | sharper.absent;
+            for lane in lanes(again & (open | decided)) {
+                answers.tiers[lane] = Tier::DoubleDouble;
+                answers.take(&sharper, lane);
+            }
+            open &= !decided;
+        }
+        if wish.exact {
+            for lane in lanes(open) {
+                answers.tiers[lane] = Tier::Exact;
+                if !self.multiple_root(level, packet, lane, &mut answers, workspace) {
+                    self.decide(packet, lane, &mut answers);
+                }
+            }
+        }
+        answers
+    }
+
+    /// One arithmetic's answers.
+    fn in_lanes(
+        &self,
+        level: Level,
+        packet: &Packet,
+        asked: u32,
+        sharper: bool,
+        workspace: &mut Workspace,
+    ) -> Answers {
+        let rows = self.rows() * if sharper { 2 } else { 1 };
+        if workspace.rows.len() < rows {
+            workspace.rows.resize(rows, Row::default());
+        }
+        let rows = &mut workspace.rows[..];
+        macro_rules! on {
+            ($simd:expr) => {{
+                let l = Double($simd);
+                if sharper {
+                    kernel::first_hits::<_, Pair<_>>(l, self, packet, asked, rows)
+                } else {
+                    kernel::first_hits::<_, Plain<_>>(l, self, packet, asked, rows)
+                }
+            }};
+        }
+        #[cfg(target_arch = "x86_64")]
+        {
+            if let Some(simd) = level.as_avx512() {
+                return on!(simd);
+            }
+            if let Some(simd) = level.as_avx2() {
+                return on!(simd);
+            }
+            if let Some(simd) = level.as_sse2() {
+                return on!(simd);
+            }
+        }
+        #[cfg(target_arch = "aarch64")]
+        if let Some(simd) = level.as_neon() {
+            return on!(simd);
+        }
+        let _ = level;
+        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+        {
+            return on!(fearless_simd::Fallback::new());
+        }
+        #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+        Answers::default()
+    }
+
+    /// Tries whether the first hit of an undecided ray is a multiple root at a t of few bits close
+    /// to where the search ended, as where a ray passes through a node. Whether it is a root, and
+    /// how many times, is decided exactly; that none comes before it by signs of what is left when
+    /// it is divided out. Returns whether the ray is decided.
+    #[cold]
+    fn multiple_root(
+        &self,
+        level: Level,
+        packet: &Packet,
+        lane: usize,
+        answers: &mut Answers,
+        workspace: &mut Workspace,
+    ) -> bool {
+        let [factor] = self.factors.as_slice() else {
+            return false;
+        };
+        if packet.leaving >> lane & 1 == 1 {
+            return false;
+        }
+        let (doubt, stretch) = (answers.doubt[lane], answers.stretch[lane]);
+        let ray = packet.ray(lane);
+        for width in GUESS_WIDTHS {
+            let Some(t) = simplest(doubt - width * stretch, doubt + width * stretch) else {
+                continue;
+            };
+            if t <= packet.t_min[lane] || t >= packet.t_max[lane] || !self.surely_inside(&ray, t) {
+                continue;
+            }
+            let multiplicity = exact::order_of_vanishing(self, &factor.program, &ray, t);
+            if multiplicity < 2 || multiplicity > factor.program.result().degree {
+                continue;
+            }
+            let mut before = Packet {
+                roots_at_end: multiplicity,
+                ..*packet
+            };
+            before.t_max[lane] = t;
+            for sharper in [false, true] {
+                let found = self.in_lanes(level, &before, 1 << lane, sharper, workspace);
+                if found.absent >> lane & 1 == 1 {
+                    answers.found |= 1 << lane;
+                    answers.t[lane] = t;
+                    (answers.low[lane], answers.high[lane]) = (t, t);
+                    answers.multiplicity[lane] = multiplicity as u32 * factor.power;
+                    return true;
+                }
+                if found.found >> lane & 1 == 1 {
+                    answers.take(&found, lane);
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    /// Whether the point at t is in the clip box with room to spare.
+    fn surely_inside(&self, ray: &Ray, t: f64) -> bool {
+        let p = ray.origin + ray.direction * t;
+        (0..3).all(|i| {
+            let row = &self.inverse[0].rows[i];
+            let x = row[0][0] * p.x + row[1][0] * p.y + row[2][0] * p.z + row[3][0];
+            x - self.clip.lower[i] > self.margin && self.clip.upper[i] - x > self.margin
+        })
+    }
+
+    /// One lane, exactly.
+    #[cold]
+    fn decide(&self, packet: &Packet, lane: usize, answers: &mut Answers) {
+        let ray = packet.ray(lane);
+        let start = if packet.leaving >> lane & 1 == 1 {
+            ExactStart::OnSurface(packet.roundoff)
+        } else {
+            ExactStart::Free
+        };
+        let limits = [packet.t_min[lane], packet.t_max[lane]];
+        let bit = 1 << lane;
+        match exact::first_hit(self, &ray, limits, start, answers.doubt[lane]) {
+            Some(root) => {
+                answers.found |= bit;
+                answers.absent &= !bit;
+                answers.t[lane] = root.t;
+                [answers.low[lane], answers.high[lane]] = root.enclosure;
+                answers.multiplicity[lane] = root.multiplicity.unwrap_or(0);
+            }
+            None => {
+                answers.absent |= bit;
+                answers.found &= !bit;
+            }
+        }
+    }
+}
+
+impl Answers {
+    /// Takes a lane over from other answers.
+    fn take(&mut self, from: &Self, lane: usize) {
+        let bit = 1 << lane;
+        self.found = self.found & !bit | from.found & bit;
+        self.absent = self.absent & !bit | from.absent & bit;
+        self.t[lane] = from.t[lane];
+        self.low[lane] = from.low[lane];
+        self.high[lane] = from.high[lane];
+        self.multiplicity[lane] = from.multiplicity[lane];
+        self.doubt[lane] = from.doubt[lane];
+        self.stretch[lane] = from.stretch[lane];
+    }
+}
+
+/// How far from where a search ended a root is guessed, relative to the stretch: a double root is
+/// found to half of a double-double's digits and less, a triple one to a third.
+const GUESS_WIDTHS: [f64; 2] = [1.0 / (1u64 << 34) as f64, 1.0 / (1u64 << 22) as f64];
+
+/// The number of fewest bits within an interval of finite numbers.
+fn simplest(low: f64, high: f64) -> Option<f64> {
+    if !(low < high && low.is_finite() && high.is_finite()) {
+        return None;
+    }
+    if low <= 0.0 && high >= 0.0 {
+        return Some(0.0);
+    }
+    if high < 0.0 {
+        return simplest(-high, -low).map(|x| -x);
+    }
+    let mut step = power_of_two(binary_exponent(high));
+    loop {
+        let x = (high / step).floor() * step;
+        if x >= low {
+            return Some(x);
+        }
+        step *= 0.5;
+    }
+}
+
+/// The lanes of a set.
+fn lanes(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = bits.trailing_zeros() as usize;
+        bits &= bits.wrapping_sub(1);
+        (lane < 32).then_some(lane)
+    })
+}

@@ -1,0 +1,255 @@
+//! One ray, decided exactly.
+
+use std::cmp::Ordering;
+
+use num_bigint::BigInt;
+use num_traits::{One, Signed, ToPrimitive, Zero};
+
+use super::super::program::{Program, Whole};
+use super::Certified;
+use crate::math::exact::Exact;
+use crate::math::number::power_of_two;
+use crate::root::exact::{ExactRoot, Point, Stretch, first_root};
+use crate::shape::Ray;
+use crate::shape::ladder::ScaledRay;
+
+/// A ray in integers: local point = (origin + t direction) / scale.
+struct IntegerRay {
+    origin: [BigInt; 3],
+    direction: [BigInt; 3],
+    scale: BigInt,
+}
+
+/// What the ray's start is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum ExactStart {
+    /// Nothing is known.
+    Free,
+    /// A point of the surface, rounded with this unit roundoff.
+    OnSurface(f64),
+}
+
+impl IntegerRay {
+    /// The common power of two is of no concern. t is in units of the scaled direction.
+    fn new(placed: &Certified, ray: &ScaledRay) -> Self {
+        let line = placed.ladder.exact.local(ray);
+        let all = line
+            .origin
+            .iter()
+            .chain(&line.direction)
+            .chain([&line.scale]);
+        let exponents = all.filter(|x| x.magnitude().is_some()).map(|x| x.parts().1);
+        let least = exponents.min().unwrap_or(0);
+        let integer = |x: &Exact| {
+            let (mantissa, exponent) = x.parts();
+            if mantissa.is_zero() {
+                BigInt::zero()
+            } else {
+                mantissa << (exponent - least).unsigned_abs()
+            }
+        };
+        Self {
+            origin: line.origin.each_ref().map(integer),
+            direction: line.direction.each_ref().map(integer),
+            scale: integer(&line.scale),
+        }
+    }
+
+    /// Where the line is in the closed clip box and the limits are kept; `None` for nowhere.
+    fn stretch(&self, placed: &Certified, limits: [f64; 2]) -> Option<Stretch> {
+        let [t_min, t_max] = limits;
+        let mut stretch = Stretch {
+            low: Point::of(t_min),
+            low_counts: t_min == 0.0,
+            // Where there is no limit, a face follows: the direction is not zero.
+            high: Point::of(f64::MAX),
+            high_counts: false,
+        };
+        if t_max < f64::MAX {
+            stretch.high = Point::of(t_max);
+        }
+        for axis in 0..3 {
+            let (o, d) = (&self.origin[axis], &self.direction[axis]);
+            // Lower face ≤ (o + t d) / scale ≤ upper face.
+            let room = [placed.clip.lower[axis], placed.clip.upper[axis]].map(|face| {
+                let face = Point::of(face);
+                (
+                    &face.numerator * &self.scale - o * &face.denominator,
+                    face.denominator,
+                )
+            });
+            if d.is_zero() {
+                if room[0].0.is_positive() || room[1].0.is_negative() {
+                    return None;
+                }
+                continue;
+            }
+            let [mut enter, mut leave] = room.map(|(room, denominator)| Point {
+                numerator: if d.is_negative() { -room } else { room },
+                denominator: denominator * d.abs(),
+            });
+            if d.is_negative() {
+                std::mem::swap(&mut enter, &mut leave);
+            }
+            if enter.compare(&stretch.low) == Ordering::Greater {
+                (stretch.low, stretch.low_counts) = (enter, true);
+            }
+            if leave.compare(&stretch.high) == Ordering::Less {
+                (stretch.high, stretch.high_counts) = (leave, true);
+            }
+        }
+        Some(stretch)
+    }
+}
+
+/// The first hit of a ray, with its multiplicity, perhaps near the hint; t in units of the
+/// direction.
+pub(super) fn first_hit(
+    placed: &Certified,
+    ray: &Ray,
+    limits: [f64; 2],
+    start: ExactStart,
+    hint: f64,
+) -> Option<ExactRoot> {
+    if !ray.is_valid() || limits[0].is_nan() || limits[1].is_nan() {
+        return None;
+    }
+    let scaled = ScaledRay::new(ray);
+    let unit = power_of_two(scaled.exponent());
+    let line = IntegerRay::new(placed, &scaled);
+    let stretch = line.stretch(placed, limits.map(|t| t * unit))?;
+    let coordinates = [0, 1, 2].map(|i| [line.origin[i].clone(), line.direction[i].clone()]);
+    let hint = Some(hint * unit).filter(|x| x.is_finite());
+    let mut first: Option<ExactRoot> = None;
+    for factor in &placed.factors {
+        let degree = factor.program.result().degree;
+        let mut coefficients = factor.program.powers(&coordinates, &line.scale, degree)?;
+        if let ExactStart::OnSurface(roundoff) = start
+            && is_start(&coefficients, roundoff)
+        {
+            coefficients = beyond_start(coefficients);
+        }
+        let Some(root) = first_root(&coefficients, &stretch, hint) else {
+            continue;
+        };
+        let root = ExactRoot {
+            multiplicity: root.multiplicity.map(|m| m * factor.power),
+            ..root
+        };
+        first = Some(match first {
+            Some(other) => earlier(other, root),
+            None => root,
+        });
+    }
+    first.map(|root| ExactRoot {
+        t: root.t / unit,
+        enclosure: root.enclosure.map(|t| t / unit),
+        ..root
+    })
+}
+
+/// How many times t is a root of the field along the ray, 0 where it is none; t is in units of the
+/// direction.
+pub(super) fn order_of_vanishing(
+    placed: &Certified,
+    program: &Program,
+    ray: &Ray,
+    t: f64,
+) -> usize {
+    let scaled = ScaledRay::new(ray);
+    let line = IntegerRay::new(placed, &scaled);
+    let at = Point::of(t * power_of_two(scaled.exponent()));
+    // (o + (t + τ) d) / s = (o q + p d + τ' d) / (s q) for t = p / q and τ' = q τ.
+    let (p, q) = (&at.numerator, &at.denominator);
+    let mut points = [0, 1, 2].map(|i| &line.origin[i] * q + &line.direction[i] * p);
+    let mut scale = [&line.scale * q];
+    let mut directions = line.direction;
+    // Powers of two that are common are of no concern.
+    let shift = trailing(points.iter().chain(&scale));
+    points
+        .iter_mut()
+        .chain(&mut scale)
+        .for_each(|x| *x >>= shift);
+    let shift = trailing(directions.iter());
+    directions.iter_mut().for_each(|x| *x >>= shift);
+    let degree = program.result().degree;
+    let coordinates: [[BigInt; 2]; 3] =
+        [0, 1, 2].map(|i| [points[i].clone(), directions[i].clone()]);
+    let small = small(&coordinates, &scale[0]);
+    // Mostly the first two powers decide, and machine integers hold them.
+    for highest in [1, 2, 4, degree] {
+        let highest = highest.min(degree);
+        let quick = small.as_ref().and_then(|(coordinates, scale)| {
+            Some(first_other_than_zero(&program.powers(
+                coordinates,
+                scale,
+                highest,
+            )?))
+        });
+        let order = quick.unwrap_or_else(|| {
+            let powers = program.powers(&coordinates, &scale[0], highest);
+            powers.map_or(Some(0), |powers| first_other_than_zero(&powers))
+        });
+        if let Some(order) = order {
+            return order;
+        }
+    }
+    0
+}
+
+fn first_other_than_zero<N: Whole>(powers: &[N]) -> Option<usize> {
+    powers.iter().position(|c| !c.vanishes())
+}
+
+fn trailing<'a>(numbers: impl Iterator<Item = &'a BigInt>) -> u64 {
+    numbers
+        .filter_map(BigInt::trailing_zeros)
+        .min()
+        .unwrap_or(0)
+}
+
+/// The same numbers as machine integers, if they fit.
+fn small(coordinates: &[[BigInt; 2]; 3], scale: &BigInt) -> Option<([[i128; 2]; 3], i128)> {
+    let mut small = [[0; 2]; 3];
+    for (to, from) in small.iter_mut().flatten().zip(coordinates.iter().flatten()) {
+        *to = from.to_i128()?;
+    }
+    Some((small, scale.to_i128()?))
+}
+
+/// The earlier root; of two that f64 cannot tell apart, what holds for both.
+fn earlier(a: ExactRoot, b: ExactRoot) -> ExactRoot {
+    let (first, other) = if a.t <= b.t { (a, b) } else { (b, a) };
+    if first.enclosure[1] < other.enclosure[0] {
+        return first;
+    }
+    ExactRoot {
+        multiplicity: None,
+        enclosure: [
+            first.enclosure[0].min(other.enclosure[0]),
+            first.enclosure[1].min(other.enclosure[1]),
+        ],
+        ..first
+    }
+}
+
+/// Whether the factor is the one whose root the start is: its value is small beside what it is
+/// elsewhere on the line. The start is off by some 2⁴ roundings of coordinates that may be 2¹²
+/// times as large as the object; a factor that is not the one is not as small.
+fn is_start(coefficients: &[BigInt], roundoff: f64) -> bool {
+    let largest = coefficients.iter().skip(1).map(BigInt::bits).max();
+    let bits = (1.0 / roundoff).log2() as u64 - 16;
+    coefficients[0].bits() + bits < largest.unwrap_or(0)
+}
+
+/// The field less its value at the start, divided by t: the level through the start itself.
+fn beyond_start(coefficients: Vec<BigInt>) -> Vec<BigInt> {
+    let mut rest: Vec<BigInt> = coefficients.into_iter().skip(1).collect();
+    while rest.len() > 1 && rest[0].is_zero() {
+        rest.remove(0);
+    }
+    if rest.is_empty() {
+        rest.push(BigInt::one());
+    }
+    rest
+}

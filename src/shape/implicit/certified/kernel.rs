@@ -1,0 +1,450 @@
+//! One packet in one arithmetic.
+
+use super::super::program::Step;
+use super::place::{Certified, FactorField, Inverse};
+use super::{Answers, DoubleLanes, Packet, SHARP, WIDTH};
+use crate::math::lanes::{Mask, Real};
+use crate::math::words::{Row, Word};
+use crate::root::bernstein::{Problem, Roots, first_roots};
+
+/// A clipped packet.
+struct Clipped<L: DoubleLanes> {
+    near: L::Real,
+    far: L::Real,
+    /// Bound of the distance between rounded and exact local points on the clipped line.
+    shift: L::Real,
+    /// What a unit roundoff of 1 in the world's coordinates moves the local start by.
+    start_shift: L::Real,
+    meets: L::Mask,
+    /// Lanes for which the bounds mean nothing.
+    lost: L::Mask,
+}
+
+/// The first hits, as far as this arithmetic can tell.
+#[inline(never)]
+pub(super) fn first_hits<L: DoubleLanes, W: Word<L>>(
+    l: L,
+    placed: &Certified,
+    packet: &Packet,
+    asked: u32,
+    rows: &mut [Row],
+) -> Answers {
+    l.vectorize(
+        #[inline(always)]
+        || {
+            let tier = W::ROWS - 1;
+            let inverse = &placed.inverse[tier];
+            let local = Local::<L, W>::new(l, inverse, packet);
+            let asked = l.mask_from_bits(asked);
+            let clipped = local.clip(l, placed, inverse, packet);
+            let mut all = Combined::new(l, asked, &clipped);
+            if all.open.any() {
+                let ends = local.ends(l, &clipped);
+                for factor in &placed.factors {
+                    expand::<L, W>(l, factor, &ends, rows);
+                    all.join::<W>(l, factor, packet, &clipped, rows);
+                }
+            }
+            all.answers(l, placed, &local, &clipped)
+        },
+    )
+}
+
+/// Rays in object coordinates.
+struct Local<L: DoubleLanes, W: Word<L>> {
+    origin: [W; 3],
+    direction: [W; 3],
+    /// Largest magnitude of a world coordinate of the origin, and of a component of the direction.
+    extent: L::Real,
+    length: L::Real,
+}
+
+impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
+    #[inline(always)]
+    fn new(l: L, inverse: &Inverse, packet: &Packet) -> Self {
+        let (o, d) = (&packet.origin, &packet.direction);
+        let o = [l.load(&o[0]), l.load(&o[1]), l.load(&o[2])];
+        let d = [l.load(&d[0]), l.load(&d[1]), l.load(&d[2])];
+        let mut local = Self {
+            origin: o.map(
+                #[inline(always)]
+                |x| W::real(l, x),
+            ),
+            direction: d.map(
+                #[inline(always)]
+                |x| W::real(l, x),
+            ),
+            extent: o[0].abs().max(o[1].abs()).max(o[2].abs()),
+            length: d[0].abs().max(d[1].abs()).max(d[2].abs()),
+        };
+        for i in 0..3 {
+            let row = &inverse.rows[i];
+            let mut origin = W::constant(l, row[3]);
+            let mut direction = W::constant(l, [0.0; 2]);
+            for j in (0..3).rev() {
+                let entry = W::constant(l, row[j]);
+                origin = entry.fused(W::real(l, o[j]), origin);
+                direction = entry.fused(W::real(l, d[j]), direction);
+            }
+            local.origin[i] = origin;
+            local.direction[i] = direction;
+        }
+        local
+    }
+
+    /// The part of the lines within the box and the limits, and a little more.
+    #[inline(always)]
+    fn clip(&self, l: L, placed: &Certified, inverse: &Inverse, packet: &Packet) -> Clipped<L> {
+        let zero = l.real(0.0);
+        let tiny = l.real(f64::MIN_POSITIVE * 1e16);
+        let o = self.origin.map(
+            #[inline(always)]
+            |x| x.head(),
+        );
+        let d = self.direction.map(
+            #[inline(always)]
+            |x| x.head(),
+        );
+        let faces = placed.outer.lower.iter().chain(&placed.outer.upper);
+        let face = l.real(faces.fold(0.0, |a: f64, b| a.max(b.abs())));
+        let reach = o[0].abs().max(o[1].abs()).max(o[2].abs()) + face;
+        let fastest = d[0].abs().max(d[1].abs()).max(d[2].abs());
+        // No point of the box is farther along the line; twice as much pays for the margin.
+        let farthest = (reach + reach) / fastest;
+        let moved = self
+            .extent
+            .mul_add(l.real(inverse.origin_error), l.real(inverse.offset_error));
+        let turned = self.length * l.real(inverse.direction_error);
+        let map_error = farthest.mul_add(turned, moved);
+        // A face is met at a t with three roundings: that moves the point by 3u (reach + margin).
+        let slack = reach.mul_add(l.real(4.0 * f64::EPSILON), map_error);
+        let mut lost = !slack.lt(l.real(placed.margin * 0.5)) | !fastest.gt(tiny);
+        let mut meets = l.mask(true);
+        let t_min = l.load(&packet.t_min);
+        let (mut near, mut far) = (t_min, l.load(&packet.t_max));
+        for i in 0..3 {
+            let lower = l.real(placed.outer.lower[i]) - slack;
+            let upper = l.real(placed.outer.upper[i]) + slack;
+            let inverse = l.real(1.0) / d[i];
+            let (t1, t2) = ((lower - o[i]) * inverse, (upper - o[i]) * inverse);
+            let along = d[i].same(zero);
+            // Beside the box, or along it for all t.
+            let beside = along & (o[i].lt(lower) | o[i].gt(upper));
+            meets = meets & !beside;
+            lost = lost | (!along & !d[i].abs().gt(tiny));
+            near = l.select(along, near, t1.min(t2).max(near));
+            far = l.select(along, far, t1.max(t2).min(far));
+        }
+        // Rounding of the ends themselves: a fused operation, or a product and a sum.
+        let rounding = reach.mul_add(l.real(3.0 * W::UNIT), map_error);
+        let rounding = if W::ROWS == 1 {
+            map_error + face * l.real(f64::EPSILON)
+        } else {
+            rounding + rounding
+        };
+        Clipped {
+            near,
+            far,
+            shift: rounding,
+            // Distance, product, sum and the way back: 2³ roundings with room to spare.
+            start_shift: (self.extent + self.extent) * l.real(8.0 * inverse.largest_row),
+            meets: meets & near.le(far),
+            lost: lost | !(far - near).lt(l.real(f64::INFINITY)) & meets & near.le(far),
+        }
+    }
+
+    #[inline(always)]
+    fn ends(&self, l: L, clipped: &Clipped<L>) -> [[W; 2]; 3] {
+        let (near, far) = (W::real(l, clipped.near), W::real(l, clipped.far));
+        let mut ends = [[near; 2]; 3];
+        #[expect(
+            clippy::needless_range_loop,
+            reason = "iterators over lanes are not always inlined"
+        )]
+        for i in 0..3 {
+            let (o, d) = (self.origin[i], self.direction[i]);
+            ends[i] = [d.fused(near, o), d.fused(far, o)];
+        }
+        ends
+    }
+}
+
+/// Bernstein coefficients of a factor between the ends.
+#[inline(always)]
+fn expand<L: DoubleLanes, W: Word<L>>(
+    l: L,
+    factor: &FactorField,
+    ends: &[[W; 2]; 3],
+    rows: &mut [Row],
+) {
+    for step in factor.program.steps() {
+        match step {
+            Step::Coordinate { axis, to } => {
+                ends[*axis][0].store(l, rows, to.at);
+                ends[*axis][1].store(l, rows, to.at + 1);
+            }
+            Step::Product { a, b, to } => {
+                let (known, result) = rows.split_at_mut(W::ROWS * to.at);
+                if a == b {
+                    square::<L, W>(l, known, a.at, a.degree, result);
+                } else {
+                    let (a, b) = if a.degree <= b.degree { (a, b) } else { (b, a) };
+                    for k in 0..=to.degree {
+                        let first = k.saturating_sub(b.degree);
+                        let last = a.degree.min(k);
+                        let mut sum = W::load(l, known, a.at + first).times(W::load(
+                            l,
+                            known,
+                            b.at + k - first,
+                        ));
+                        for i in first + 1..=last {
+                            let x = W::load(l, known, a.at + i);
+                            sum = x.fused(W::load(l, known, b.at + k - i), sum);
+                        }
+                        sum.store(l, result, k);
+                    }
+                }
+            }
+            Step::Combination {
+                terms,
+                constant,
+                to,
+            } => {
+                let (known, result) = rows.split_at_mut(W::ROWS * to.at);
+                W::constant(l, constant.parts).store(l, result, 0);
+                let mut degree = 0;
+                for (factor, form) in terms {
+                    while degree < form.degree {
+                        elevate::<L, W>(l, result, degree);
+                        degree += 1;
+                    }
+                    let factor = W::constant(l, factor.parts);
+                    for i in 0..=degree {
+                        let sum = W::load(l, result, i);
+                        factor
+                            .fused(W::load(l, known, form.at + i), sum)
+                            .store(l, result, i);
+                    }
+                }
+                while degree < to.degree {
+                    elevate::<L, W>(l, result, degree);
+                    degree += 1;
+                }
+            }
+        }
+    }
+    let result = factor.program.result();
+    for (i, &reciprocal) in factor.reciprocals.iter().enumerate() {
+        let c = W::load(l, rows, result.at + i).times(W::constant(l, reciprocal));
+        c.store(l, rows, result.at + i);
+    }
+}
+
+/// Multiplies a form by (1 − s) + s.
+#[inline(always)]
+fn elevate<L: DoubleLanes, W: Word<L>>(l: L, form: &mut [Row], degree: usize) {
+    let mut carried = W::load(l, form, 0);
+    for i in 1..=degree {
+        let next = W::load(l, form, i);
+        carried.plus(next).store(l, form, i);
+        carried = next;
+    }
+    carried.store(l, form, degree + 1);
+}
+
+/// The square of a form: products of unequal coefficients count twice.
+#[inline(always)]
+fn square<L: DoubleLanes, W: Word<L>>(
+    l: L,
+    known: &[Row],
+    at: usize,
+    degree: usize,
+    result: &mut [Row],
+) {
+    for k in 0..=2 * degree {
+        let first = k.saturating_sub(degree);
+        let pairs = k.div_ceil(2);
+        let half = k / 2;
+        if first >= pairs {
+            let x = W::load(l, known, at + half);
+            x.times(x).store(l, result, k);
+            continue;
+        }
+        let mut sum = W::load(l, known, at + first).times(W::load(l, known, at + k - first));
+        for i in first + 1..pairs {
+            let x = W::load(l, known, at + i);
+            sum = x.fused(W::load(l, known, at + k - i), sum);
+        }
+        sum = sum.times_real(l.real(2.0));
+        if k % 2 == 0 {
+            let x = W::load(l, known, at + half);
+            sum = x.fused(x, sum);
+        }
+        sum.store(l, result, k);
+    }
+}
+
+/// What is asked of a factor's coefficients.
+struct Question<L: DoubleLanes> {
+    error: L::Real,
+    start_error: L::Real,
+    accounted: f64,
+    roots_at_end: usize,
+    on_root: L::Mask,
+    active: L::Mask,
+}
+
+impl<L: DoubleLanes> Question<L> {
+    /// In a function of its own for each degree, so that its numbers can stay in registers.
+    #[inline(never)]
+    fn ask<W: Word<L>, const M: usize>(&self, l: L, rows: &[Row]) -> Roots<L> {
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let mut coefficients = [W::constant(l, [0.0; 2]); M];
+                for (i, c) in coefficients.iter_mut().enumerate() {
+                    *c = W::load(l, rows, i);
+                }
+                first_roots(
+                    l,
+                    &Problem {
+                        coefficients,
+                        error: self.error,
+                        on_root: self.on_root,
+                        start_error: self.start_error,
+                        roots_at_end: self.roots_at_end,
+                        accounted: self.accounted,
+                        active: self.active,
+                    },
+                )
+            },
+        )
+    }
+}
+
+/// The first root over all factors.
+struct Combined<L: DoubleLanes> {
+    found: L::Mask,
+    open: L::Mask,
+    absent: L::Mask,
+    undecided: L::Mask,
+    t: L::Real,
+    low: L::Real,
+    high: L::Real,
+    multiplicity: L::Real,
+    doubt: L::Real,
+}
+
+impl<L: DoubleLanes> Combined<L> {
+    #[inline(always)]
+    fn new(l: L, asked: L::Mask, clipped: &Clipped<L>) -> Self {
+        let infinite = l.real(f64::INFINITY);
+        Self {
+            found: l.mask(false),
+            open: asked & clipped.meets & !clipped.lost,
+            absent: asked & !clipped.meets & !clipped.lost,
+            undecided: asked & clipped.lost,
+            t: infinite,
+            low: infinite,
+            high: infinite,
+            multiplicity: l.real(0.0),
+            doubt: infinite,
+        }
+    }
+
+    #[inline(always)]
+    fn join<W: Word<L>>(
+        &mut self,
+        l: L,
+        factor: &FactorField,
+        packet: &Packet,
+        clipped: &Clipped<L>,
+        rows: &[Row],
+    ) {
+        let result = factor.program.result();
+        let bounds = &factor.bounds[W::ROWS - 1];
+        let error = clipped
+            .shift
+            .mul_add(l.real(bounds.change), l.real(bounds.error));
+        // The start of a ray that leaves the surface is a root of it as far as f64 could tell, and
+        // its coordinates are off by some roundings of the world's.
+        let rounding = clipped.start_shift * l.real(packet.roundoff);
+        let question = Question {
+            error,
+            start_error: rounding.mul_add(l.real(bounds.change), error + l.real(factor.root_error)),
+            accounted: factor.accounted,
+            roots_at_end: packet.roots_at_end,
+            on_root: l.mask_from_bits(packet.leaving),
+            active: self.open & !self.undecided,
+        };
+        let rows = &rows[W::ROWS * result.at..];
+        let roots = match result.degree {
+            2 => question.ask::<W, 3>(l, rows),
+            4 => question.ask::<W, 5>(l, rows),
+            6 => question.ask::<W, 7>(l, rows),
+            8 => question.ask::<W, 9>(l, rows),
+            12 => question.ask::<W, 13>(l, rows),
+            _ => question.ask::<W, 25>(l, rows),
+        };
+        let width = clipped.far - clipped.near;
+        let largest = clipped.near.abs().max(clipped.far.abs());
+        let slack = largest * l.real(2.0 * f64::EPSILON);
+        let t = roots.root.mul_add(width, clipped.near);
+        let low = roots.low.mul_add(width, clipped.near) - slack;
+        let high = roots.high.mul_add(width, clipped.near) + slack;
+        let first = roots.found & low.lt(self.low);
+        let apart = high.lt(self.low) | self.high.lt(low);
+        let power = l.real(f64::from(factor.power));
+        let known = l.select(apart, power, l.real(0.0));
+        let farther = roots.found & !first & !apart;
+        self.multiplicity = l.select(first, known, self.multiplicity);
+        self.multiplicity = l.select(farther, l.real(0.0), self.multiplicity);
+        self.t = l.select(first, t, self.t);
+        self.low = l.select(first, low, self.low);
+        self.high = l.select(roots.found, high.min(self.high), self.high);
+        self.found = self.found | roots.found;
+        self.doubt = roots.doubt.mul_add(width, clipped.near);
+        self.undecided = self.undecided | (question.active & !roots.found & !roots.absent);
+    }
+
+    #[inline(always)]
+    fn answers<W: Word<L>>(
+        self,
+        l: L,
+        placed: &Certified,
+        local: &Local<L, W>,
+        clipped: &Clipped<L>,
+    ) -> Answers {
+        let low = self.low.max(clipped.near);
+        let high = self.high.min(clipped.far);
+        let mut sure = self.found & !self.undecided;
+        if let Some(cut) = &placed.cut {
+            // The margin is wider than what rounding does to these points.
+            for i in 0..3 {
+                let (o, d) = (local.origin[i].head(), local.direction[i].head());
+                let (a, b) = (d.mul_add(low, o), d.mul_add(high, o));
+                let slack = clipped.shift + l.real(placed.margin / 1024.0);
+                let (least, most) = (a.min(b) - slack, a.max(b) + slack);
+                sure = sure & least.gt(l.real(cut.lower[i])) & most.lt(l.real(cut.upper[i]));
+            }
+        }
+        let absent = self.absent | (self.open & !self.found & !self.undecided);
+        let mut answers = Answers {
+            found: sure.bits(),
+            absent: absent.bits(),
+            blurred: (high - low)
+                .gt((clipped.far - clipped.near) * l.real(SHARP))
+                .bits(),
+            ..Answers::default()
+        };
+        l.store(self.t.max(low).min(high), &mut answers.t);
+        l.store(low, &mut answers.low);
+        l.store(self.doubt, &mut answers.doubt);
+        l.store(clipped.far - clipped.near, &mut answers.stretch);
+        l.store(high, &mut answers.high);
+        let mut multiplicity = [0.0; WIDTH];
+        l.store(self.multiplicity, &mut multiplicity);
+        answers.multiplicity = multiplicity.map(|m| m as u32);
+        answers
+    }
+}

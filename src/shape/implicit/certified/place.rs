@@ -1,0 +1,274 @@
+//! A polynomial surface placed in the world, with every bound that does not depend on the ray.
+
+use glam::DVec3;
+
+use super::super::program::Program;
+use super::super::program::bounds::{FieldBounds, PLAIN, Rounding, binomial, bounds};
+use super::super::tape::Tape;
+use super::outer::outer_box;
+use crate::math::affine::Affine;
+use crate::math::double_double::DoubleDouble;
+use crate::math::exact::Exact;
+use crate::math::number::{Number, dot};
+use crate::root::bernstein::split_error;
+use crate::shape::SingularMatrix;
+use crate::shape::ladder::Ladder;
+
+/// Double-double in lanes, see [`crate::math::words::Pair`].
+const PAIR: Rounding = Rounding {
+    unit: 2.0 * f64::EPSILON * f64::EPSILON,
+    steps: 2.0,
+    parts: 2,
+};
+
+/// Faces of a box, by axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Lower faces.
+    pub lower: [f64; 3],
+    /// Upper faces.
+    pub upper: [f64; 3],
+}
+
+/// One factor of the field.
+#[derive(Debug, Clone)]
+pub(super) struct FactorField {
+    pub program: Program,
+    /// Its power in the field.
+    pub power: u32,
+    /// 1 / C(n, i), each as a sum of two f64.
+    pub reciprocals: Vec<[f64; 2]>,
+    /// By tier.
+    pub bounds: [FieldBounds; 2],
+    /// Bound of the value at a root as f64 finds it.
+    pub root_error: f64,
+    /// Part of the solver's rounding that is accounted for: 1.
+    pub accounted: f64,
+}
+
+/// The map from world to object in one arithmetic.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Inverse {
+    /// Entries of the 3×4 matrix, each as a sum of two f64.
+    pub rows: [[[f64; 2]; 4]; 3],
+    /// Error of a local direction's component, for a direction whose largest component is 1.
+    pub direction_error: f64,
+    /// The same of a local origin, for an origin whose largest component is 1.
+    pub origin_error: f64,
+    /// And what does not depend on the origin.
+    pub offset_error: f64,
+    /// Largest sum of a row's magnitudes: local length of a world vector of components 1.
+    pub largest_row: f64,
+}
+
+/// A polynomial surface in the world.
+#[derive(Debug, Clone)]
+pub struct Certified {
+    pub(super) factors: Vec<FactorField>,
+    /// By tier.
+    pub(super) inverse: [Inverse; 2],
+    pub(super) ladder: Ladder,
+    /// Where hits count, object coordinates.
+    pub(super) clip: Limits,
+    /// Within it, where the surface is.
+    pub(super) outer: Limits,
+    /// Faces beyond which a root would not count; infinite where the surface does not reach them.
+    pub(super) cut: Option<Limits>,
+    /// Bound of the local ends' coordinates beyond the outer box.
+    pub(super) margin: f64,
+}
+
+/// Share of the box by which the ends of a clipped ray may lie outside of it.
+const MARGIN: f64 = 1.0 / 1024.0;
+
+impl Certified {
+    /// Places the zeros of a field within a clip box; `None` where the field is no polynomial, or
+    /// one that is too large.
+    ///
+    /// # Errors
+    /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
+    pub fn new(
+        field: &Tape,
+        clip: [DVec3; 2],
+        to_world: &Affine,
+    ) -> Result<Option<Self>, SingularMatrix> {
+        let factors = field.factors().factors;
+        let programs = factors
+            .iter()
+            .map(|f| Some((Program::new(&f.tape)?, f.multiplicity)));
+        let Some(programs) = programs.collect::<Option<Vec<_>>>() else {
+            return Ok(None);
+        };
+        let tapes: Vec<Tape> = factors.into_iter().map(|f| f.tape).collect();
+        let whole = outer_box(&tapes, clip);
+        let programs = if whole.is_some() {
+            programs
+        } else {
+            Vec::new()
+        };
+        Self::place(programs, clip, whole.unwrap_or(clip), to_world).map(Some)
+    }
+
+    fn place(
+        factors: Vec<(Program, u32)>,
+        clip: [DVec3; 2],
+        outer: [DVec3; 2],
+        to_world: &Affine,
+    ) -> Result<Self, SingularMatrix> {
+        let limits = |[lower, upper]: [DVec3; 2]| Limits {
+            lower: lower.to_array(),
+            upper: upper.to_array(),
+        };
+        let (clip, outer) = (limits(clip), limits(outer));
+        let half = (0..3).map(|i| (outer.upper[i] - outer.lower[i]) / 2.0);
+        let margin = MARGIN * half.fold(0.0, f64::max);
+        let free = |face: f64, at: f64| (at - face).abs() > margin;
+        let cut = Limits {
+            lower: [0, 1, 2].map(|i| {
+                let free = free(clip.lower[i], outer.lower[i]);
+                if free {
+                    f64::NEG_INFINITY
+                } else {
+                    clip.lower[i]
+                }
+            }),
+            upper: [0, 1, 2].map(|i| {
+                let free = free(clip.upper[i], outer.upper[i]);
+                if free { f64::INFINITY } else { clip.upper[i] }
+            }),
+        };
+        let is_cut = cut.lower.iter().chain(&cut.upper).any(|x| x.is_finite());
+        let reach = [0, 1, 2].map(|i| outer.lower[i].abs().max(outer.upper[i].abs()) + margin);
+        let ladder = Ladder::new(to_world)?;
+        let factors = factors
+            .into_iter()
+            .map(|(program, power)| FactorField::new(program, power, reach))
+            .collect();
+        Ok(Self {
+            factors,
+            inverse: [Inverse::plain(&ladder), Inverse::pair(&ladder)],
+            ladder,
+            clip,
+            outer,
+            cut: is_cut.then_some(cut),
+            margin,
+        })
+    }
+
+    /// The same with the bounds of rounding errors left out: to show that they are needed.
+    #[must_use]
+    pub fn without_bounds(mut self) -> Self {
+        for factor in &mut self.factors {
+            factor.accounted = 0.0;
+            for bounds in &mut factor.bounds {
+                (bounds.error, bounds.change) = (0.0, 0.0);
+            }
+        }
+        self
+    }
+
+    /// Largest number of coefficients of a factor's forms.
+    pub(super) fn rows(&self) -> usize {
+        let rows = self.factors.iter().map(|factor| factor.program.rows());
+        rows.max().unwrap_or(0)
+    }
+}
+
+impl FactorField {
+    fn new(program: Program, power: u32, reach: [f64; 3]) -> Self {
+        let degree = program.result().degree;
+        let binomials: Vec<f64> = (0..=degree).map(|i| binomial(degree, i)).collect();
+        let reciprocal = |b: &f64| {
+            let high = 1.0 / b;
+            [high, (-b).mul_add(high, 1.0) / b]
+        };
+        let by_tier = [PLAIN, PAIR].map(|rounding| bounds(&program, reach, rounding));
+        // Twice the bound, as the estimate is of the same quality as the signs around it, and as many
+        // splits as hardly any root takes.
+        let splits = 16.0 * split_error(degree, PLAIN.unit) * by_tier[0].size;
+        Self {
+            root_error: 2.0 * (by_tier[0].error + splits),
+            accounted: 1.0,
+            reciprocals: binomials.iter().map(reciprocal).collect(),
+            bounds: by_tier,
+            program,
+            power,
+        }
+    }
+}
+
+impl Inverse {
+    /// The entries as double-double numbers with bounds.
+    fn entries(ladder: &Ladder) -> [[DoubleDouble; 4]; 3] {
+        let frame = &ladder.double_double;
+        frame.adjugate.each_ref().map(|row| {
+            let entry = |j: usize| row[j].divided_by(&frame.scale);
+            let shift = dot(row, &frame.translation).negated();
+            [entry(0), entry(1), entry(2), shift.divided_by(&frame.scale)]
+        })
+    }
+
+    /// Whether products with these entries are exact, and nothing is added: one entry of a row is
+    /// a power of two, the others are zero.
+    fn is_exact(ladder: &Ladder, entries: &[[DoubleDouble; 4]; 3]) -> bool {
+        let frame = &ladder.exact;
+        entries.iter().zip(&frame.adjugate).all(|(row, exact)| {
+            let linear = row[..3].iter().zip(exact).all(|(entry, adjugate)| {
+                let rounded = Exact::of(entry.to_f64()).times(&frame.scale);
+                let same = rounded.minus(adjugate).magnitude().is_none();
+                let mantissa = entry.to_f64().to_bits() & ((1 << 52) - 1);
+                same && mantissa == 0
+            });
+            let single = row[..3].iter().filter(|e| e.to_f64() != 0.0).count() == 1;
+            linear && single && row[3].to_f64() == 0.0 && row[3].error() == 0.0
+        })
+    }
+
+    fn plain(ladder: &Ladder) -> Self {
+        // Three rounded coefficients, an offset and three fused operations: 6u, see
+        // `shape::lanes`; half a unit more pays for the rounding of the bounds.
+        Self::new(ladder, 6.5 * f64::EPSILON / 2.0, |_| 0.0, 1)
+    }
+
+    fn pair(ladder: &Ladder) -> Self {
+        // Three products and three sums, and the entries' own errors.
+        Self::new(ladder, 8.0 * PAIR.unit, DoubleDouble::error, 2)
+    }
+
+    fn new(ladder: &Ladder, unit: f64, own: impl Fn(&DoubleDouble) -> f64, parts: usize) -> Self {
+        let entries = Self::entries(ladder);
+        let rows = entries.each_ref().map(|row| {
+            row.each_ref().map(|entry| {
+                let [high, low] = entry.parts();
+                if parts == 1 { [high, 0.0] } else { [high, low] }
+            })
+        });
+        let row_sum = |row: &[DoubleDouble; 4]| row[..3].iter().map(|e| e.to_f64().abs()).sum();
+        let largest_row = entries.iter().map(row_sum).fold(0.0, f64::max);
+        if Self::is_exact(ladder, &entries) {
+            return Self {
+                rows,
+                largest_row,
+                direction_error: 0.0,
+                origin_error: 0.0,
+                offset_error: 0.0,
+            };
+        }
+        let bound = |entries: &[DoubleDouble]| -> f64 {
+            entries
+                .iter()
+                .map(|e| unit * e.to_f64().abs() + own(e))
+                .sum()
+        };
+        let largest =
+            |f: &dyn Fn(&[DoubleDouble; 4]) -> f64| entries.iter().map(f).fold(0.0, f64::max);
+        let direction_error = largest(&|row| bound(&row[..3]));
+        Self {
+            rows,
+            largest_row,
+            direction_error,
+            origin_error: direction_error,
+            offset_error: largest(&|row| bound(&row[3..])),
+        }
+    }
+}

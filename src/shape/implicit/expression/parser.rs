@@ -1,0 +1,299 @@
+//! From words to operations, by recursive descent.
+
+use std::ops::Range;
+
+use super::build::{Builder, Value};
+use super::error::{ExpressionError, Problem};
+use super::token::{self, Token, Word};
+use super::{DEEPEST, FUNCTIONS, LONGEST, Parameter, RESERVED, rational};
+use crate::shape::implicit::tape::{Binary, Operation, Unary};
+
+type Parsed = Result<(Value, Range<usize>), ExpressionError>;
+
+/// Reads one expression.
+pub(super) struct Parser<'a> {
+    text: &'a str,
+    parameters: &'a [Parameter],
+    /// Whether x, y and z may occur.
+    coordinates: bool,
+    token: Token,
+    depth: usize,
+    builder: Builder,
+}
+
+/// What may stand where a value begins.
+const VALUE: &str = "a number, a name, a function or \"(\"";
+/// What may stand where a value has ended.
+const OPERATOR: &str = "one of + - * / ^";
+
+impl<'a> Parser<'a> {
+    /// Reads the whole text.
+    pub fn read(
+        text: &'a str,
+        parameters: &'a [Parameter],
+        coordinates: bool,
+    ) -> Result<(Builder, Value), ExpressionError> {
+        if text.len() > LONGEST {
+            return Err(ExpressionError::new(Problem::TooLong, LONGEST..text.len()));
+        }
+        let mut parser = Self {
+            text,
+            parameters,
+            coordinates,
+            token: token::next(text, 0)?,
+            depth: 0,
+            builder: Builder::default(),
+        };
+        if parser.token.word == Word::End {
+            return Err(ExpressionError::new(Problem::Empty, 0..text.len()));
+        }
+        let (value, _) = parser.sum()?;
+        match parser.token.word {
+            Word::End => Ok((parser.builder, value)),
+            Word::Mark(b')') => Err(ExpressionError::new(Problem::Closing, parser.token.span)),
+            _ => Err(parser.unexpected(OPERATOR)),
+        }
+    }
+
+    fn advance(&mut self) -> Result<Token, ExpressionError> {
+        let next = token::next(self.text, self.token.span.end)?;
+        Ok(std::mem::replace(&mut self.token, next))
+    }
+
+    fn at(&self, mark: u8) -> bool {
+        self.token.word == Word::Mark(mark)
+    }
+
+    fn unexpected(&self, expected: &str) -> ExpressionError {
+        let span = self.token.span.clone();
+        let problem = match self.token.word {
+            Word::End => Problem::End,
+            _ => Problem::Unexpected(self.text[span.clone()].to_owned()),
+        };
+        ExpressionError::new(problem, span).expected(expected)
+    }
+
+    /// One level further down, with a bound on how many there are.
+    fn deeper(&mut self, read: impl FnOnce(&mut Self) -> Parsed) -> Parsed {
+        if self.depth == DEEPEST {
+            let span = self.token.span.clone();
+            return Err(ExpressionError::new(Problem::TooDeep, span));
+        }
+        self.depth += 1;
+        let parsed = read(self);
+        self.depth -= 1;
+        parsed
+    }
+
+    /// An operation of the text at `span`.
+    fn make(
+        &mut self,
+        span: Range<usize>,
+        make: impl FnOnce(&mut Builder) -> Result<Value, Problem>,
+    ) -> Parsed {
+        self.builder.span = span.clone();
+        match make(&mut self.builder) {
+            Ok(value) => Ok((value, span)),
+            Err(problem) => Err(ExpressionError::new(problem, span)),
+        }
+    }
+
+    fn sum(&mut self) -> Parsed {
+        let (mut left, mut span) = self.product()?;
+        while let Word::Mark(mark @ (b'+' | b'-')) = self.token.word {
+            self.advance()?;
+            let (right, end) = self.product()?;
+            let whole = span.start..end.end;
+            (left, span) = self.make(whole, |builder| match mark {
+                b'+' => builder.sum(left, right),
+                _ => builder.difference(left, right),
+            })?;
+        }
+        Ok((left, span))
+    }
+
+    fn product(&mut self) -> Parsed {
+        let (mut left, mut span) = self.sign()?;
+        while let Word::Mark(mark @ (b'*' | b'/')) = self.token.word {
+            self.advance()?;
+            let (right, end) = self.sign()?;
+            let whole = span.start..end.end;
+            (left, span) = self.make(whole, |builder| match mark {
+                b'*' => builder.product(left, right),
+                _ => builder.quotient(left, right),
+            })?;
+        }
+        Ok((left, span))
+    }
+
+    fn sign(&mut self) -> Parsed {
+        let Word::Mark(mark @ (b'+' | b'-')) = self.token.word else {
+            return self.power();
+        };
+        let start = self.advance()?.span.start;
+        let (value, span) = self.deeper(Self::sign)?;
+        let whole = start..span.end;
+        if mark == b'+' {
+            return Ok((value, whole));
+        }
+        self.make(whole, |builder| builder.unary(Unary::Negative, value))
+    }
+
+    fn power(&mut self) -> Parsed {
+        let (base, span) = self.atom()?;
+        if !self.at(b'^') {
+            return Ok((base, span));
+        }
+        self.advance()?;
+        let (exponent, end) = self.deeper(Self::sign)?;
+        let whole = span.start..end.end;
+        self.make(whole, |builder| builder.power(base, exponent))
+    }
+
+    fn atom(&mut self) -> Parsed {
+        match self.token.word {
+            Word::Number => {
+                let span = self.advance()?.span;
+                let value = rational(&self.text[span.clone()]);
+                let value = value.ok_or(Problem::TooManyDigits);
+                self.make(span, |_| value.map(Value::Constant))
+            }
+            Word::Name => {
+                let span = self.advance()?.span;
+                self.name(span)
+            }
+            Word::Mark(b'(') => {
+                let open = self.advance()?.span;
+                let (value, _) = self.deeper(Self::sum)?;
+                let close = self.close(&open, "one of + - * / ^ or \")\"")?;
+                Ok((value, open.start..close.end))
+            }
+            _ => Err(self.unexpected(VALUE)),
+        }
+    }
+
+    /// The `)` that belongs to the `(` at `open`.
+    fn close(
+        &mut self,
+        open: &Range<usize>,
+        expected: &str,
+    ) -> Result<Range<usize>, ExpressionError> {
+        match self.token.word {
+            Word::Mark(b')') => Ok(self.advance()?.span),
+            Word::End => Err(ExpressionError::new(Problem::Opening, open.clone())),
+            _ => Err(self.unexpected(expected)),
+        }
+    }
+
+    fn name(&mut self, span: Range<usize>) -> Parsed {
+        let text = self.text;
+        let name = &text[span.clone()];
+        if self.at(b'(') {
+            return self.call(name, span);
+        }
+        if let Some(parameter) = self.parameters.iter().find(|p| p.name == name) {
+            return Ok((Value::Constant(parameter.value.clone()), span));
+        }
+        match ["x", "y", "z"].iter().position(|axis| *axis == name) {
+            Some(axis) if self.coordinates => {
+                return self.make(span, |builder| builder.push(Operation::Coordinate(axis)));
+            }
+            Some(_) => {
+                return Err(ExpressionError::new(
+                    Problem::Coordinate(name.to_owned()),
+                    span,
+                ));
+            }
+            None => {}
+        }
+        if name == "pi" {
+            return self.make(span, Builder::pi);
+        }
+        if FUNCTIONS.iter().any(|(known, _)| *known == name) {
+            return Err(ExpressionError::new(Problem::NoCall(name.to_owned()), span));
+        }
+        let mut error = ExpressionError::new(Problem::UnknownName(name.to_owned()), span);
+        let parameters = self.parameters.iter().map(|p| p.name.clone());
+        error.names = RESERVED
+            .iter()
+            .map(|n| (*n).to_owned())
+            .chain(parameters)
+            .collect();
+        // A misspelt function without its arguments is still best told its name.
+        error
+            .names
+            .extend(FUNCTIONS.iter().map(|(n, _)| (*n).to_owned()));
+        Err(error)
+    }
+
+    fn call(&mut self, name: &str, span: Range<usize>) -> Parsed {
+        let Some((_, wanted)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
+            let taken = RESERVED.contains(&name) || self.parameters.iter().any(|p| p.name == name);
+            let problem = Problem::UnknownFunction(name.to_owned());
+            let mut error = ExpressionError::new(problem, span);
+            if taken {
+                error.expected = Some("an operator between a name and \"(\", such as *".to_owned());
+            } else {
+                error.names = FUNCTIONS.iter().map(|(n, _)| (*n).to_owned()).collect();
+            }
+            return Err(error);
+        };
+        let open = self.advance()?.span;
+        let mut arguments = Vec::new();
+        if !self.at(b')') {
+            arguments.push(self.deeper(Self::sum)?.0);
+            while self.at(b',') {
+                self.advance()?;
+                arguments.push(self.deeper(Self::sum)?.0);
+            }
+        }
+        let close = self.close(&open, "one of + - * / ^ , or \")\"")?;
+        let whole = span.start..close.end;
+        let several = matches!(name, "min" | "max");
+        let found = arguments.len();
+        if found < *wanted || (found > *wanted && !several) {
+            let name = name.to_owned();
+            let more = if several { " or more" } else { "" };
+            let words = format!("{wanted}{more}");
+            let error = ExpressionError::new(Problem::Arguments { name, found }, whole);
+            return Err(error.expected(words));
+        }
+        self.make(whole, |builder| apply(builder, name, arguments))
+    }
+}
+
+/// A function of its arguments, as many as it needs.
+fn apply(builder: &mut Builder, name: &str, arguments: Vec<Value>) -> Result<Value, Problem> {
+    let binary = match name {
+        "min" => Some(Binary::Minimum),
+        "max" => Some(Binary::Maximum),
+        "atan2" => Some(Binary::ArcTangent2),
+        _ => None,
+    };
+    let mut arguments = arguments.into_iter();
+    // The number of arguments was checked by the caller.
+    let first = arguments.next().ok_or(Problem::End)?;
+    if let Some(function) = binary {
+        let mut value = first;
+        for argument in arguments {
+            value = builder.binary(function, value, argument)?;
+        }
+        return Ok(value);
+    }
+    let function = match name {
+        "sqrt" => Unary::SquareRoot,
+        "abs" => Unary::Absolute,
+        "exp" => Unary::Exponential,
+        "log" => Unary::Logarithm,
+        "sin" => Unary::Sine,
+        "cos" => Unary::Cosine,
+        "tan" => Unary::Tangent,
+        "asin" => Unary::ArcSine,
+        "acos" => Unary::ArcCosine,
+        "atan" => Unary::ArcTangent,
+        "sinh" => Unary::HyperbolicSine,
+        "cosh" => Unary::HyperbolicCosine,
+        _ => Unary::HyperbolicTangent,
+    };
+    builder.unary(function, first)
+}

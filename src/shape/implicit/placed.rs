@@ -1,0 +1,250 @@
+//! An implicit surface in the world and a ray's first hit with it, by the finder of its choice.
+
+use fearless_simd::Level;
+
+use super::baseline::{Stepped, SteppingFinder};
+use super::certified::{Answers, Certified, Packet, Tier, Wish, Workspace};
+use super::enclosed_packet::EnclosedPacket;
+use crate::math::affine::Affine;
+use crate::scene::{FinderChoice, Implicit};
+use crate::shape::{Query, SingularMatrix};
+
+use glam::DVec3;
+
+/// How the hits of a surface are found.
+#[derive(Debug, Clone)]
+pub enum Finder {
+    /// Equal steps and bisection: proves nothing.
+    SignChange,
+    /// Isolation of polynomial roots.
+    Polynomial {
+        /// The surface.
+        certified: Box<Certified>,
+        /// Whether what double-double leaves undecided is decided exactly.
+        exact: bool,
+    },
+    /// Interval subdivision.
+    Interval(Box<EnclosedPacket>),
+    /// Sphere tracing with a proved bound.
+    SphereTrace(Box<EnclosedPacket>),
+}
+
+impl Finder {
+    /// The finder that a surface asks for; `auto` is certified isolation for polynomials, and
+    /// interval subdivision for other fields.
+    ///
+    /// # Errors
+    /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
+    pub fn new(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
+        let exact = match implicit.finder {
+            FinderChoice::Auto => true,
+            FinderChoice::Polynomial => false,
+            FinderChoice::SignChange => return Ok(Self::SignChange),
+            FinderChoice::Interval => return Self::interval(implicit, to_world),
+            FinderChoice::SphereTrace => {
+                let placed = EnclosedPacket::by_spheres(implicit, to_world)?;
+                return Ok(Self::SphereTrace(Box::new(placed)));
+            }
+        };
+        let certified = Certified::new(&implicit.field.tape, implicit.inside, to_world)?;
+        match certified {
+            Some(certified) => Ok(Self::Polynomial {
+                certified: Box::new(certified),
+                exact,
+            }),
+            None => Self::interval(implicit, to_world),
+        }
+    }
+
+    fn interval(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
+        let placed = EnclosedPacket::by_subdivision(implicit, to_world)?;
+        Ok(Self::Interval(Box::new(placed)))
+    }
+
+    /// The first hits of a packet; `None` from the finder that proves nothing. `sharp` asks for
+    /// narrow enclosures where they cost more.
+    pub fn first_hits(
+        &self,
+        level: Level,
+        packet: &Packet,
+        sharp: bool,
+        workspace: &mut Workspace,
+    ) -> Option<Answers> {
+        match self {
+            Self::SignChange => None,
+            Self::Polynomial { certified, exact } => {
+                let wish = Wish {
+                    sharp,
+                    exact: *exact,
+                };
+                Some(certified.first_hits(level, packet, wish, workspace))
+            }
+            Self::Interval(enclosed) | Self::SphereTrace(enclosed) => {
+                Some(enclosed.first_hits(packet))
+            }
+        }
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::SignChange => "sign-change",
+            Self::Polynomial { .. } => "polynomial",
+            Self::Interval(_) => "interval",
+            Self::SphereTrace(_) => "sphere-trace",
+        }
+    }
+
+    /// Whether its answers are proofs.
+    pub fn is_certified(&self) -> bool {
+        !matches!(self, Self::SignChange)
+    }
+}
+
+/// How many rays each arithmetic has decided, over all implicit surfaces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ImplicitTally {
+    /// Certain in f64.
+    pub double: u64,
+    /// Certain in double-double.
+    pub double_double: u64,
+    /// Decided exactly.
+    pub exact: u64,
+    /// Not decided.
+    pub undecided: u64,
+    /// Answered without proof.
+    pub uncertified: u64,
+}
+
+impl ImplicitTally {
+    /// One more.
+    pub fn count(&mut self, tier: Option<Tier>) {
+        match tier {
+            Some(Tier::Double) => self.double += 1,
+            Some(Tier::DoubleDouble) => self.double_double += 1,
+            Some(Tier::Exact) => self.exact += 1,
+            None => self.undecided += 1,
+        }
+    }
+
+    /// The counts of both together.
+    pub fn joined(self, other: Self) -> Self {
+        Self {
+            double: self.double + other.double,
+            double_double: self.double_double + other.double_double,
+            exact: self.exact + other.exact,
+            undecided: self.undecided + other.undecided,
+            uncertified: self.uncertified + other.uncertified,
+        }
+    }
+
+    /// All rays.
+    pub fn rays(&self) -> u64 {
+        self.double + self.double_double + self.exact + self.undecided + self.uncertified
+    }
+}
+
+/// A surface in the world.
+#[derive(Debug, Clone)]
+pub struct PlacedImplicit {
+    stepping: SteppingFinder,
+    finder: Finder,
+    level: Level,
+}
+
+/// A hit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ImplicitHit {
+    /// Where on the ray, in units of its direction; finite.
+    pub t: f64,
+    /// World coordinates.
+    pub point: DVec3,
+    /// Unit outward normal in the world; see [`normal`](super::normal) for where the gradient
+    /// vanishes.
+    pub normal: Option<DVec3>,
+    /// Bounds of t; the estimate twice where nothing is proved.
+    pub enclosure: [f64; 2],
+    /// How many times it is a root along the ray, where that is known.
+    pub multiplicity: Option<u32>,
+    /// What has decided; `None` where nothing is proved.
+    pub tier: Option<Tier>,
+}
+
+/// What a finder knows of a ray's first hit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ImplicitAnswer {
+    /// There is one.
+    Found(ImplicitHit),
+    /// There is none.
+    Absent,
+    /// The finder's arithmetic or its work bound did not suffice.
+    Undecided,
+}
+
+impl PlacedImplicit {
+    /// Places the surface.
+    ///
+    /// # Errors
+    /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
+    pub fn new(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
+        Ok(Self {
+            stepping: SteppingFinder::new(implicit, to_world)?,
+            finder: Finder::new(implicit, to_world)?,
+            level: Level::new(),
+        })
+    }
+
+    /// The finder.
+    pub fn finder(&self) -> &Finder {
+        &self.finder
+    }
+
+    /// The first hit with `t_min` < t < `t_max` inside the clip box; t = 0 counts where `t_min` is
+    /// 0.
+    pub fn first_hit(
+        &self,
+        query: &Query,
+        workspace: &mut Workspace,
+        tally: &mut ImplicitTally,
+    ) -> ImplicitAnswer {
+        if !query.ray.is_valid() {
+            return ImplicitAnswer::Absent;
+        }
+        let mut packet = Packet::default();
+        let limits = [query.t_min, query.t_max];
+        packet.set(0, query.ray.origin, query.ray.direction, limits);
+        let answers = self.finder.first_hits(self.level, &packet, true, workspace);
+        let Some(answers) = answers else {
+            tally.uncertified += 1;
+            let stepped = self.stepping.first_hit(query);
+            return stepped.map_or(ImplicitAnswer::Absent, |Stepped { t, point, normal }| {
+                ImplicitAnswer::Found(ImplicitHit {
+                    t,
+                    point,
+                    normal,
+                    enclosure: [t, t],
+                    multiplicity: None,
+                    tier: None,
+                })
+            });
+        };
+        let decided = (answers.found | answers.absent) & 1 == 1;
+        tally.count(decided.then_some(answers.tiers[0]));
+        if answers.found & 1 == 1 {
+            let t = answers.t[0];
+            let multiplicity = answers.multiplicity[0];
+            ImplicitAnswer::Found(ImplicitHit {
+                t,
+                point: self.stepping.point_at(&query.ray, t),
+                normal: self.stepping.normal_at(&query.ray, t),
+                enclosure: [answers.low[0], answers.high[0]],
+                multiplicity: (multiplicity > 0).then_some(multiplicity),
+                tier: Some(answers.tiers[0]),
+            })
+        } else if decided {
+            ImplicitAnswer::Absent
+        } else {
+            ImplicitAnswer::Undecided
+        }
+    }
+}

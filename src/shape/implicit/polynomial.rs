@@ -1,0 +1,314 @@
+//! Exact polynomials in x, y and z with rational coefficients.
+
+use std::cell::Cell;
+use std::collections::BTreeMap;
+
+use num_bigint::BigInt;
+use num_integer::Integer;
+use num_rational::BigRational;
+use num_traits::{One, Signed, Zero};
+
+use super::tape::{Algebra, Binary, Tape, Unary};
+
+/// Exponents of x, y and z.
+pub type Exponents = [u32; 3];
+
+/// Highest total degree that is recognised.
+pub const MOST_DEGREE: u32 = 64;
+/// Most products of two terms that recognising may take: some tenths of a second.
+const MOST_PRODUCTS: u64 = 1 << 21;
+
+/// A polynomial: integer coefficients over one common positive denominator.
+///
+/// No coefficient is zero, and no factor > 1 is common to all coefficients and the denominator, so
+/// that equal polynomials are represented equally.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Polynomial {
+    terms: BTreeMap<Exponents, BigInt>,
+    denominator: BigInt,
+}
+
+impl Polynomial {
+    /// Integer coefficients by exponents, over a common denominator other than zero.
+    pub fn new(terms: impl IntoIterator<Item = (Exponents, BigInt)>, denominator: BigInt) -> Self {
+        let mut sums = BTreeMap::<Exponents, BigInt>::new();
+        for (exponents, coefficient) in terms {
+            *sums.entry(exponents).or_default() += coefficient;
+        }
+        Self {
+            terms: sums,
+            denominator,
+        }
+        .reduced()
+    }
+
+    /// The same value everywhere.
+    pub fn constant(value: &BigRational) -> Self {
+        Self::new([([0; 3], value.numer().clone())], value.denom().clone())
+    }
+
+    /// x, y or z.
+    pub fn coordinate(axis: usize) -> Self {
+        let mut exponents = [0; 3];
+        exponents[axis] = 1;
+        Self::new([(exponents, BigInt::one())], BigInt::one())
+    }
+
+    /// The field of a tape, where it is built from sums, differences, products and whole powers
+    /// alone and neither its degree exceeds [`MOST_DEGREE`] nor multiplying it out a bound on
+    /// work.
+    pub fn from_tape(tape: &Tape) -> Option<Self> {
+        let recognition = Recognition {
+            budget: Cell::new(MOST_PRODUCTS),
+        };
+        tape.evaluate(&recognition, &mut Vec::new())?
+    }
+
+    /// Removes zeros and common factors.
+    fn reduced(mut self) -> Self {
+        self.terms.retain(|_, c| !c.is_zero());
+        let mut common = self.denominator.clone();
+        for coefficient in self.terms.values() {
+            if common.abs().is_one() {
+                break;
+            }
+            common = common.gcd(coefficient);
+        }
+        if self.denominator.is_negative() != common.is_negative() {
+            common = -common;
+        }
+        if !common.is_one() {
+            self.divide(&common);
+            self.denominator /= common;
+        }
+        self
+    }
+
+    fn divide(&mut self, divisor: &BigInt) {
+        for coefficient in self.terms.values_mut() {
+            *coefficient /= divisor;
+        }
+    }
+
+    /// Coefficients other than zero, in lexical order of the exponents.
+    pub fn terms(&self) -> impl Iterator<Item = (Exponents, BigRational)> + '_ {
+        let rational = |c: &BigInt| BigRational::new(c.clone(), self.denominator.clone());
+        self.terms.iter().map(move |(e, c)| (*e, rational(c)))
+    }
+
+    /// Coefficients × [`Self::denominator`].
+    pub fn numerators(&self) -> impl Iterator<Item = (Exponents, &BigInt)> + '_ {
+        self.terms.iter().map(|(e, c)| (*e, c))
+    }
+
+    /// The least positive integer that makes all coefficients integers.
+    pub fn denominator(&self) -> &BigInt {
+        &self.denominator
+    }
+
+    /// Total degree; 0 for constants, zero among them.
+    pub fn degree(&self) -> u32 {
+        let sums = self.terms.keys().map(|e| e.iter().sum());
+        sums.max().unwrap_or(0)
+    }
+
+    /// Whether it is zero everywhere.
+    pub fn is_zero(&self) -> bool {
+        self.terms.is_empty()
+    }
+
+    /// Whether it is the same everywhere.
+    pub fn is_constant(&self) -> bool {
+        self.degree() == 0
+    }
+
+    /// The positive multiple with coprime integer coefficients: the same signs, the same zeros.
+    pub fn primitive(&self) -> Self {
+        let content = self
+            .terms
+            .values()
+            .fold(BigInt::zero(), |common, c| common.gcd(c));
+        let mut primitive = self.clone();
+        if !content.is_zero() {
+            primitive.divide(&content);
+        }
+        primitive.denominator = BigInt::one();
+        primitive
+    }
+
+    /// Derivative along an axis.
+    pub fn derivative(&self, axis: usize) -> Self {
+        let lowered = self
+            .terms
+            .iter()
+            .filter(|(e, _)| e[axis] > 0)
+            .map(|(e, c)| {
+                let mut exponents = *e;
+                exponents[axis] -= 1;
+                (exponents, c * e[axis])
+            });
+        Self::new(lowered, self.denominator.clone())
+    }
+
+    /// Derivatives along x, y and z.
+    pub fn gradient(&self) -> [Self; 3] {
+        [0, 1, 2].map(|axis| self.derivative(axis))
+    }
+
+    /// Sum.
+    pub fn plus(&self, other: &Self) -> Self {
+        let scale = |a: &Self, by: &BigInt| -> Vec<_> {
+            a.terms.iter().map(|(e, c)| (*e, c * by)).collect()
+        };
+        let mut terms = scale(self, &other.denominator);
+        terms.extend(scale(other, &self.denominator));
+        Self::new(terms, &self.denominator * &other.denominator)
+    }
+
+    /// Difference.
+    pub fn minus(&self, other: &Self) -> Self {
+        self.plus(&other.negated())
+    }
+
+    /// Its opposite.
+    pub fn negated(&self) -> Self {
+        let terms = self.terms.iter().map(|(e, c)| (*e, -c));
+        Self {
+            terms: terms.collect(),
+            denominator: self.denominator.clone(),
+        }
+    }
+
+    /// Product.
+    pub fn times(&self, other: &Self) -> Self {
+        let mut products = BTreeMap::<Exponents, BigInt>::new();
+        for (e, a) in &self.terms {
+            for (f, b) in &other.terms {
+                let exponents = [e[0] + f[0], e[1] + f[1], e[2] + f[2]];
+                *products.entry(exponents).or_default() += a * b;
+            }
+        }
+        Self {
+            terms: products,
+            denominator: &self.denominator * &other.denominator,
+        }
+        .reduced()
+    }
+
+    /// The exact value at a point.
+    pub fn value(&self, point: &[BigRational; 3]) -> BigRational {
+        let degrees = [0, 1, 2].map(|i| self.terms.keys().map(|e| e[i]).max().unwrap_or(0));
+        let powers = [0, 1, 2].map(|i| Powers::new(&point[i], degrees[i]));
+        let mut sum = BigInt::zero();
+        for (exponents, coefficient) in &self.terms {
+            let factors = [0, 1, 2].map(|i| powers[i].at(exponents[i]));
+            sum += coefficient * &factors[0] * &factors[1] * &factors[2];
+        }
+        let scale = powers.iter().map(|p| &p.denominator[p.degree()]);
+        BigRational::new(sum, scale.fold(self.denominator.clone(), |a, b| a * b))
+    }
+
+    /// The exact value at a point of f64 coordinates; `None` where one of them is not finite.
+    pub fn value_at(&self, point: [f64; 3]) -> Option<BigRational> {
+        let [x, y, z] = point.map(BigRational::from_float);
+        Some(self.value(&[x?, y?, z?]))
+    }
+}
+
+/// Powers of a fraction's numerator and denominator.
+struct Powers {
+    numerator: Vec<BigInt>,
+    denominator: Vec<BigInt>,
+}
+
+impl Powers {
+    fn new(base: &BigRational, degree: u32) -> Self {
+        let powers = |base: &BigInt| {
+            let next = |power: &BigInt| Some(power * base);
+            std::iter::successors(Some(BigInt::one()), next)
+                .take(degree as usize + 1)
+                .collect()
+        };
+        Self {
+            numerator: powers(base.numer()),
+            denominator: powers(base.denom()),
+        }
+    }
+
+    fn degree(&self) -> usize {
+        self.denominator.len() - 1
+    }
+
+    /// Base to the power n, times the denominator to the power of the degree.
+    fn at(&self, n: u32) -> BigInt {
+        let n = n as usize;
+        &self.numerator[n] * &self.denominator[self.degree() - n]
+    }
+}
+
+/// Tapes in the arithmetic of polynomials; `None` stands for what is none.
+struct Recognition {
+    /// Products of terms that may yet be formed.
+    budget: Cell<u64>,
+}
+
+impl Recognition {
+    fn product(&self, a: &Polynomial, b: &Polynomial) -> Option<Polynomial> {
+        let work = a.terms.len() as u64 * b.terms.len() as u64;
+        let left = self.budget.get().checked_sub(work)?;
+        self.budget.set(left);
+        (a.degree() + b.degree() <= MOST_DEGREE).then(|| a.times(b))
+    }
+}
+
+impl Algebra for Recognition {
+    type Value = Option<Polynomial>;
+
+    fn coordinate(&self, axis: usize) -> Self::Value {
+        Some(Polynomial::coordinate(axis))
+    }
+
+    fn constant(&self, _: usize, exact: &BigRational) -> Self::Value {
+        Some(Polynomial::constant(exact))
+    }
+
+    fn unary(&self, function: Unary, a: &Self::Value) -> Self::Value {
+        match function {
+            Unary::Negative => a.as_ref().map(Polynomial::negated),
+            _ => None,
+        }
+    }
+
+    fn binary(&self, function: Binary, a: &Self::Value, b: &Self::Value) -> Self::Value {
+        let (a, b) = (a.as_ref()?, b.as_ref()?);
+        let added = (a.terms.len() + b.terms.len()) as u64;
+        self.budget.set(self.budget.get().checked_sub(added)?);
+        match function {
+            Binary::Sum => Some(a.plus(b)),
+            Binary::Difference => Some(a.minus(b)),
+            Binary::Product => self.product(a, b),
+            Binary::Quotient if b.is_constant() => {
+                let divisor = b.terms().next()?.1;
+                Some(a.times(&Polynomial::constant(&divisor.recip())))
+            }
+            _ => None,
+        }
+    }
+
+    fn whole_power(&self, a: &Self::Value, n: i32) -> Self::Value {
+        let a = a.as_ref()?;
+        let n = u32::try_from(n).ok()?;
+        if a.degree().checked_mul(n)? > MOST_DEGREE {
+            return None;
+        }
+        let mut power = Polynomial::constant(&BigRational::one());
+        // From the highest bit down: squares, and a factor where the bit is set.
+        for bit in (0..u32::BITS - n.leading_zeros()).rev() {
+            power = self.product(&power, &power)?;
+            if n >> bit & 1 == 1 {
+                power = self.product(&power, a)?;
+            }
+        }
+        Some(power)
+    }
+}

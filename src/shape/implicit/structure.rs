@@ -1,0 +1,222 @@
+//! What the shape of a tape tells of its zero set: products, powers, differences of squares.
+
+use num_rational::BigRational;
+use num_traits::{Signed, Zero};
+
+use super::rational::square_root;
+use super::tape::{Binary, Operation, Place, Tape, Unary};
+
+/// A field whose zeros are among those of a product.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Factor {
+    /// The field.
+    pub tape: Tape,
+    /// How often it is a factor.
+    pub multiplicity: u32,
+}
+
+/// A field as ± a positive constant × its factors, each to its multiplicity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Factors {
+    /// Whether the constant is negative.
+    pub negative: bool,
+    /// The factors, each different; at least one unless the field is constant.
+    pub factors: Vec<Factor>,
+}
+
+/// More factors than this are left together: each costs a search of its own.
+const MOST_FACTORS: usize = 64;
+
+impl Tape {
+    /// The operations that the result at `root` needs, as a tape of its own, and for each of them
+    /// the place it had.
+    pub fn rooted(&self, root: Place) -> (Tape, Vec<Place>) {
+        let operations = self.operations();
+        let mut needed = vec![false; operations.len()];
+        needed[root] = true;
+        for place in (0..=root).rev().filter(|p| *p < operations.len()) {
+            if needed[place] {
+                for operand in operands(&operations[place]).into_iter().flatten() {
+                    needed[operand] = true;
+                }
+            }
+        }
+        let mut tape = Tape::default();
+        let mut moved = vec![0; operations.len()];
+        let places: Vec<Place> = (0..=root).filter(|p| needed[*p]).collect();
+        for &place in &places {
+            moved[place] = tape.push_moved(self, place, &moved);
+        }
+        (tape, places)
+    }
+
+    /// All operations of another tape; returns where its field stands.
+    fn append(&mut self, other: &Tape) -> Place {
+        let mut moved = Vec::with_capacity(other.operations().len());
+        for place in 0..other.operations().len() {
+            moved.push(self.push_moved(other, place, &moved));
+        }
+        moved.last().copied().unwrap_or(0)
+    }
+
+    /// An operation of another tape whose operands stand here at `moved`.
+    fn push_moved(&mut self, other: &Tape, place: Place, moved: &[Place]) -> Place {
+        match other.operations()[place] {
+            Operation::Constant(index) => self.push_constant(other.constants()[index].clone()),
+            Operation::Coordinate(axis) => self.push(Operation::Coordinate(axis)),
+            Operation::Unary(function, a) => self.push(Operation::Unary(function, moved[a])),
+            Operation::Binary(function, a, b) => {
+                self.push(Operation::Binary(function, moved[a], moved[b]))
+            }
+            Operation::WholePower(a, n) => self.push(Operation::WholePower(moved[a], n)),
+        }
+    }
+
+    /// The field's outermost products and powers taken apart; a² − b² counts as (a − b)(a + b),
+    /// where a constant b² must have a rational root. The zero set is that of the factors
+    /// together, wherever all of them are defined.
+    pub fn factors(&self) -> Factors {
+        let mut found = Factors {
+            negative: false,
+            factors: Vec::new(),
+        };
+        let mut waiting = vec![(self.clone(), 1u32)];
+        while let Some((tape, multiplicity)) = waiting.pop() {
+            let room = waiting.len() + found.factors.len() < MOST_FACTORS;
+            match tape.split().filter(|_| room) {
+                Some(split) => {
+                    found.negative ^= split.negative && multiplicity % 2 == 1;
+                    for (part, n) in split.parts.into_iter().rev() {
+                        waiting.push((part, multiplicity.saturating_mul(n)));
+                    }
+                }
+                None => found.add(tape, multiplicity),
+            }
+        }
+        found
+    }
+
+    fn split(&self) -> Option<Split> {
+        let operations = self.operations();
+        let part = |place: Place| self.rooted(place).0;
+        let positive = |parts| Split {
+            negative: false,
+            parts,
+        };
+        match *operations.last()? {
+            Operation::Unary(Unary::Negative, a) => Some(Split {
+                negative: true,
+                parts: vec![(part(a), 1)],
+            }),
+            Operation::WholePower(a, n) if n > 0 => {
+                Some(positive(vec![(part(a), n.unsigned_abs())]))
+            }
+            Operation::Binary(Binary::Product, a, b) => Some(match (self.at(a), self.at(b)) {
+                (Some(c), _) if !c.is_zero() => Split {
+                    negative: c.is_negative(),
+                    parts: vec![(part(b), 1)],
+                },
+                (_, Some(c)) if !c.is_zero() => Split {
+                    negative: c.is_negative(),
+                    parts: vec![(part(a), 1)],
+                },
+                _ => positive(vec![(part(a), 1), (part(b), 1)]),
+            }),
+            Operation::Binary(Binary::Difference, a, b) => match (self.root_of(a), self.root_of(b))
+            {
+                (Some(a), Some(b)) => Some(positive(a.minus_and_plus(&b))),
+                _ => None,
+            },
+            Operation::Binary(Binary::Sum, a, b) => {
+                let constant = [(a, b), (b, a)]
+                    .into_iter()
+                    .find_map(|(c, other)| Some((self.at(c).filter(|c| c.is_negative())?, other)));
+                let (c, other) = constant?;
+                let root = Root::Constant(square_root(&-c)?);
+                match self.root_of(other)? {
+                    Root::Constant(_) => None,
+                    field => Some(positive(field.minus_and_plus(&root))),
+                }
+            }
+            _ => None,
+        }
+    }
+
+    /// The constant at a place.
+    fn at(&self, place: Place) -> Option<&BigRational> {
+        match self.operations()[place] {
+            Operation::Constant(index) => Some(&self.constants()[index]),
+            _ => None,
+        }
+    }
+
+    /// What the result at a place is the square of.
+    fn root_of(&self, place: Place) -> Option<Root> {
+        match self.operations()[place] {
+            Operation::WholePower(a, n) if n > 0 && n % 2 == 0 => {
+                let (mut tape, _) = self.rooted(a);
+                if n > 2 {
+                    let last = tape.operations().len() - 1;
+                    tape.push(Operation::WholePower(last, n / 2));
+                }
+                Some(Root::Field(tape))
+            }
+            Operation::Constant(index) => {
+                let c = &self.constants()[index];
+                square_root(c)
+                    .filter(|_| c.is_positive())
+                    .map(Root::Constant)
+            }
+            _ => None,
+        }
+    }
+}
+
+struct Split {
+    negative: bool,
+    parts: Vec<(Tape, u32)>,
+}
+
+enum Root {
+    Constant(BigRational),
+    Field(Tape),
+}
+
+impl Root {
+    fn minus_and_plus(&self, other: &Self) -> Vec<(Tape, u32)> {
+        [Binary::Difference, Binary::Sum]
+            .map(|function| {
+                let mut tape = Tape::default();
+                let a = self.put_on(&mut tape);
+                let b = other.put_on(&mut tape);
+                tape.push(Operation::Binary(function, a, b));
+                (tape, 1)
+            })
+            .into()
+    }
+
+    fn put_on(&self, tape: &mut Tape) -> Place {
+        match self {
+            Self::Constant(c) => tape.push_constant(c.clone()),
+            Self::Field(field) => tape.append(field),
+        }
+    }
+}
+
+impl Factors {
+    fn add(&mut self, tape: Tape, multiplicity: u32) {
+        match self.factors.iter_mut().find(|f| f.tape == tape) {
+            Some(known) => known.multiplicity = known.multiplicity.saturating_add(multiplicity),
+            None => self.factors.push(Factor { tape, multiplicity }),
+        }
+    }
+}
+
+/// The places an operation reads.
+pub fn operands(operation: &Operation) -> [Option<Place>; 2] {
+    match *operation {
+        Operation::Coordinate(_) | Operation::Constant(_) => [None, None],
+        Operation::Unary(_, a) | Operation::WholePower(a, _) => [Some(a), None],
+        Operation::Binary(_, a, b) => [Some(a), Some(b)],
+    }
+}

@@ -1,0 +1,3 @@
+//! Comparisons that are worth a chart.
+
+pub mod finders;

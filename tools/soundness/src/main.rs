@@ -1,0 +1,105 @@
+//! Checks the intervals of etalon as built here, on every instruction set of this machine: the
+//! arithmetic exactly, by error-free transformations, the functions against 192 bits.
+
+mod arithmetic;
+mod exact;
+mod functions;
+mod random;
+mod rays;
+
+use std::process::ExitCode;
+
+use arithmetic::{OPERATIONS, Report};
+use clap::Parser;
+use etalon::math::instructions::Instructions;
+use functions::FUNCTIONS;
+use rayon::prelude::*;
+
+/// Intervals of one piece of work.
+const PIECE: u64 = 1 << 14;
+
+/// Exit codes: 0 sound, 1 not.
+#[derive(Debug, Parser)]
+struct Arguments {
+    /// Random intervals for each of + − × ÷ √.
+    #[arg(long, default_value_t = 100_000_000)]
+    arithmetic: u64,
+    /// Random intervals for each function.
+    #[arg(long, default_value_t = 1_000_000)]
+    functions: u64,
+    /// Random rays for each of some general expressions.
+    #[arg(long, default_value_t = 10_000)]
+    rays: u64,
+    /// Which random intervals and rays.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Leave out the rounding outward: the check must fail.
+    #[arg(long)]
+    unsound: bool,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let names: Vec<&str> = Instructions::all().iter().map(|i| i.name()).collect();
+    println!("instruction sets: {}", names.join(", "));
+    let mut sound = true;
+    for operation in OPERATIONS {
+        let check =
+            |seed, count| Some(arithmetic::check(operation, seed, count, arguments.unsound));
+        sound &= told(
+            &format!("{operation:?}"),
+            &over(&arguments, arguments.arithmetic, check),
+        );
+    }
+    for function in FUNCTIONS {
+        let check = |seed, count| functions::check(function, seed, count, arguments.unsound);
+        sound &= told(
+            &format!("{function:?}"),
+            &over(&arguments, arguments.functions, check),
+        );
+    }
+    if arguments.rays > 0 && !arguments.unsound {
+        sound &= rays::check(arguments.rays, arguments.seed);
+    }
+    println!("{}", if sound { "sound" } else { "NOT SOUND" });
+    if sound {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
+}
+
+/// All pieces of a check together; a piece that cannot be done counts as violated.
+fn over(
+    arguments: &Arguments,
+    count: u64,
+    check: impl Fn(u64, usize) -> Option<Report> + Sync,
+) -> Report {
+    let failed = || Report {
+        violated: 1,
+        example: Some("the reference could not be set up".to_owned()),
+        ..Report::default()
+    };
+    (0..count.div_ceil(PIECE))
+        .into_par_iter()
+        .map(|piece| {
+            let seed = arguments.seed << 40 | piece;
+            check(seed, PIECE as usize).unwrap_or_else(failed)
+        })
+        .reduce(Report::default, Report::joined)
+}
+
+fn told(name: &str, report: &Report) -> bool {
+    println!(
+        "{name}: {} checked, {} violated, {} batches with different bits{}",
+        report.checked,
+        report.violated,
+        report.different,
+        report
+            .example
+            .as_ref()
+            .map(|e| format!("; {e}"))
+            .unwrap_or_default()
+    );
+    report.is_good()
+}
