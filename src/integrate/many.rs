@@ -245,7 +245,10 @@ fn closest_along<N: Lanes>(
     closest: &mut Closest<N::Scalar>,
 ) {
     let first = |object: u32| model.parts.first[object as usize];
-    while let Some(child) = many.boxes.next(n, descent, &lone.boxes, closest.high) {
+    while let Some(child) = many
+        .boxes
+        .next::<N, true>(n, descent, &lone.boxes, closest.high)
+    {
         match child {
             Child::Balls(balls) => {
                 for from in (0..balls.count).step_by(N::COUNT) {
@@ -361,7 +364,10 @@ fn block_along<N: Lanes>(
     descent: &mut Descent<N::Scalar>,
 ) -> Block {
     let mut all = Block::Nothing;
-    while let Some(child) = many.boxes.next(n, descent, &lone.boxes, end.limit) {
+    while let Some(child) = many
+        .boxes
+        .next::<N, false>(n, descent, &lone.boxes, end.limit)
+    {
         let found = match child {
             Child::Balls(balls) => {
                 let mut found = Block::Nothing;
@@ -406,7 +412,10 @@ pub(super) fn candidates<L: Lanes>(
     let mut descent = Descent::new();
     descent.restart();
     let mut objects = many.broad.clone();
-    while let Some(child) = many.boxes.next(n, &mut descent, &lone.boxes, limit) {
+    while let Some(child) = many
+        .boxes
+        .next::<_, false>(n, &mut descent, &lone.boxes, limit)
+    {
         match child {
             Child::Balls(balls) => {
                 for from in (0..balls.count).step_by(L::Narrow::COUNT) {

@@ -29,7 +29,10 @@ use crate::spectrum::ior::RefractiveIndex;
 use crate::spectrum::observer::spectrum_to_xyz;
 
 /// Most objects that are tested one after the other; beyond, boxes are sorted into a hierarchy.
-pub const LARGEST_LIST: usize = 24;
+/// Measured on clouds of one cross-section over a floor (AVX-512): a ball more in the list costs
+/// 2 to 3 ns a camera path, another shape 3.5, and a hierarchy of 25 objects as much as a list of
+/// about 30 balls or 40 other shapes.
+pub const LARGEST_LIST: usize = 32;
 
 /// Builds model and spectrometer.
 ///

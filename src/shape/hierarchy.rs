@@ -155,12 +155,13 @@ impl<T: Scalar> Descent<T> {
         self.length = 1;
     }
 
-    /// Inserts a child among those of its node, which lie from `bottom` on, nearest on top.
+    /// Puts a child on the stack; in order among those of its node, which lie from `bottom` on,
+    /// nearest on top.
     #[inline(always)]
-    fn insert(&mut self, bottom: usize, near: T, child: u32) {
+    fn push<const ORDERED: bool>(&mut self, bottom: usize, near: T, child: u32) {
         let mut at = self.length;
         self.length += 1;
-        while at > bottom && self.stack[at - 1].0 < near {
+        while ORDERED && at > bottom && self.stack[at - 1].0 < near {
             self.stack[at] = self.stack[at - 1];
             at -= 1;
         }
@@ -267,9 +268,10 @@ impl<T: Scalar> Hierarchy<T> {
         met(l, near, far).1
     }
 
-    /// What the ray meets the box of before `limit` next, nearest boxes first.
+    /// What the ray meets the box of before `limit` next: nearest boxes first, where `ORDERED`, so that
+    /// a hit may save the others.
     #[inline(always)]
-    pub fn next<L: Lanes<Scalar = T>>(
+    pub fn next<L: Lanes<Scalar = T>, const ORDERED: bool>(
         &self,
         l: L,
         descent: &mut Descent<T>,
@@ -284,7 +286,7 @@ impl<T: Scalar> Hierarchy<T> {
             }
             let index = child & !word::KIND;
             match child & word::KIND {
-                word::NODE => self.open(l, descent, ray, limit, index),
+                word::NODE => self.open::<L, ORDERED>(l, descent, ray, limit, index),
                 word::BALLS => return Some(Child::Balls(&self.balls[index as usize])),
                 _ => return Some(Child::Object(index)),
             }
@@ -294,7 +296,7 @@ impl<T: Scalar> Hierarchy<T> {
 
     /// Puts the children of a node that the ray meets before `limit` on the stack.
     #[inline(always)]
-    fn open<L: Lanes<Scalar = T>>(
+    fn open<L: Lanes<Scalar = T>, const ORDERED: bool>(
         &self,
         l: L,
         descent: &mut Descent<T>,
@@ -328,7 +330,7 @@ impl<T: Scalar> Hierarchy<T> {
             while met != 0 {
                 let i = met.trailing_zeros() as usize % WIDTH;
                 met &= met - 1;
-                descent.insert(bottom, entries[i], node.child[(from + i) % WIDTH]);
+                descent.push::<ORDERED>(bottom, entries[i], node.child[(from + i) % WIDTH]);
             }
         }
     }
