@@ -111,7 +111,7 @@ fn items(scene: &Scene) -> Vec<Item> {
 enum Way {
     List,
     Hierarchy,
-    /// With the last object forgotten.
+    /// With the last eighth of the objects forgotten.
     Broken,
     /// By packets of twice the width.
     Wide,
@@ -133,7 +133,7 @@ impl Job for Questions<'_> {
         let (mut model, _) = build::<L::Scalar>(self.scene, &choices).unwrap();
         let mut items = items(self.scene);
         if self.way == Way::Broken {
-            items.pop();
+            items.truncate(items.len() - items.len() / 8);
         }
         let many = || Many::new(&items, vec![0], &model.shapes, &model.occluders);
         model.hierarchy = (self.way != Way::List).then(many);
