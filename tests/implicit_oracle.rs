@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use etalon::math::affine::Affine;
 use etalon::scene::{FinderChoice, Implicit};
-use etalon::shape::implicit::certified::{Certified, Packet, Wish, Workspace};
+use etalon::shape::implicit::certified::{Certified, Packet, WIDTH, Wish, Workspace};
 use etalon::shape::implicit::expression::{Parameter, parse, parse_constant};
 use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitHit, ImplicitTally, PlacedImplicit};
 use etalon::shape::{Query, Ray};
@@ -262,6 +262,44 @@ fn second_hits_of_rays_that_leave() {
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Rays in a stream have the answers they have alone.
+#[test]
+fn streams_agree_with_single_packets() {
+    let (level, mut workspace) = (Level::new(), Workspace::default());
+    let table = rows(include_str!("data/implicit.csv"));
+    for (name, surface) in &surfaces() {
+        let Implicit { field, inside, .. } = &surface.implicit;
+        let certified = Certified::new(&field.tape, *inside, &Affine::IDENTITY);
+        let certified = certified.unwrap().unwrap();
+        let rays: Vec<&Row> = table.iter().filter(|row| row["shape"] == *name).collect();
+        let packet = |rows: &[&Row]| {
+            let mut packet = Packet::default();
+            for (lane, row) in rows.iter().enumerate() {
+                let Query { ray, t_min, t_max } = query(row);
+                packet.set(lane, ray.origin, ray.direction, [t_min, t_max]);
+            }
+            packet
+        };
+        let packets: Vec<Packet> = rays.chunks(WIDTH).map(packet).collect();
+        for sharp in [false, true] {
+            let wish = Wish { sharp, exact: true };
+            let all = certified.first_hits_of_all(level, &packets, wish, &mut workspace);
+            for (packet, stream) in packets.iter().zip(all) {
+                let alone = certified.first_hits(level, packet, wish, &mut workspace);
+                assert_eq!(
+                    (alone.found, alone.absent),
+                    (stream.found, stream.absent),
+                    "{name}"
+                );
+                for lane in (0..WIDTH).filter(|lane| alone.found >> lane & 1 == 1) {
+                    let same = alone.t[lane] == stream.t[lane];
+                    assert!(same && alone.tiers[lane] == stream.tiers[lane], "{name}");
+                }
+            }
+        }
+    }
 }
 
 /// A finder that believes its arithmetic must be caught by this oracle.

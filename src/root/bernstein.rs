@@ -356,12 +356,14 @@ fn refined<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
         high = l.select(ahead, high, x);
         slope = d;
         let next = x - f / d;
-        let inside = next.gt(low) & next.lt(high);
+        // At a root the next estimate is an end of the bracket.
+        let inside = next.ge(low) & next.le(high);
         let next = l.select(inside, next, (low + high) * half);
         let step = (next - x).abs();
         x = next;
-        // The next step is of the order of the square of this one.
-        if !(active & step.gt(l.real(1.0 / (1u64 << 26) as f64))).any() {
+        // The next step is of the order of the square of this one, and the slope right to as much
+        // of itself, where the root is not much closer to a minimum than 2⁻²⁰ of the segment.
+        if !(active & step.gt(l.real(1.0 / (1u64 << 40) as f64))).any() {
             break;
         }
     }

@@ -142,16 +142,9 @@ fn certified(surface: &Surface, packets: &[Packet], exact: bool) -> f64 {
         exact,
     };
     best(|| {
-        let ask = |packet| {
-            surface
-                .certified
-                .first_hits(level, packet, wish, &mut workspace)
-        };
-        packets
-            .iter()
-            .map(ask)
-            .map(|a| a.found)
-            .fold(0, u32::wrapping_add)
+        let finder = &surface.certified;
+        let answers = finder.first_hits_of_all(level, packets, wish, &mut workspace);
+        answers.iter().map(|a| a.found).fold(0, u32::wrapping_add)
     })
 }
 

@@ -44,7 +44,14 @@ impl Yardstick {
         let [near, far] = self.clip(o, d, t_min)?;
         let mut powers = [0.0; ROOM];
         let degree = self.powers(o + d * near, d, &mut powers);
-        first_root(&powers[..=degree], far - near).map(|t| near + t)
+        let (c, end) = (&powers[..=degree], far - near);
+        let root = match degree {
+            0..=4 => first_root::<5>(c, end),
+            5..=6 => first_root::<7>(c, end),
+            7..=12 => first_root::<13>(c, end),
+            _ => first_root::<ROOM>(c, end),
+        };
+        root.map(|t| near + t)
     }
 
     /// Coefficients of powers of t about a point; returns the degree.
@@ -63,7 +70,7 @@ impl Yardstick {
                         let x = known[a.at + i];
                         let other = &known[b.at..=b.at + b.degree];
                         for (r, y) in result[i..].iter_mut().zip(other) {
-                            *r = x.mul_add(*y, *r);
+                            *r += x * *y;
                         }
                     }
                 }
@@ -78,7 +85,7 @@ impl Yardstick {
                     for (factor, form) in terms {
                         let form = &known[form.at..=form.at + form.degree];
                         for (r, x) in result.iter_mut().zip(form) {
-                            *r = factor.parts[0].mul_add(*x, *r);
+                            *r += factor.parts[0] * *x;
                         }
                     }
                 }
@@ -97,18 +104,19 @@ impl Yardstick {
 fn value_and_slope(c: &[f64], t: f64) -> (f64, f64) {
     let (mut f, mut d) = (c[c.len() - 1], 0.0);
     for &c in c[..c.len() - 1].iter().rev() {
-        d = f64::mul_add(d, t, f);
-        f = f64::mul_add(f, t, c);
+        d = d * t + f;
+        f = f * t + c;
     }
     (f, d)
 }
 
 fn value(c: &[f64], t: f64) -> f64 {
-    c.iter().rev().fold(0.0, |f, &c| f64::mul_add(f, t, c))
+    c.iter().rev().fold(0.0, |f, &c| f * t + c)
 }
 
-/// The root in a bracket by Newton's method, with halves where it leaves it.
-fn newton(c: &[f64], mut low: f64, mut high: f64, rising: bool) -> f64 {
+/// The root in a bracket by Newton's method, with halves where it leaves it, until a step is as short
+/// as the result is to be exact.
+fn newton(c: &[f64], [mut low, mut high]: [f64; 2], rising: bool, tolerance: f64) -> f64 {
     let mut t = 0.5 * (low + high);
     for _ in 0..60 {
         let (f, d) = value_and_slope(c, t);
@@ -118,12 +126,12 @@ fn newton(c: &[f64], mut low: f64, mut high: f64, rising: bool) -> f64 {
             high = t;
         }
         let next = t - f / d;
-        let next = if next > low && next < high {
+        let next = if next >= low && next <= high {
             next
         } else {
             0.5 * (low + high)
         };
-        if (next - t).abs() <= 1e-14 * high.abs() {
+        if (next - t).abs() <= tolerance {
             return next;
         }
         t = next;
@@ -131,22 +139,22 @@ fn newton(c: &[f64], mut low: f64, mut high: f64, rising: bool) -> f64 {
     t
 }
 
-/// The first root in (0, end).
-fn first_root(c: &[f64], end: f64) -> Option<f64> {
+/// The first root in (0, end) of a polynomial of degree M − 1 at most.
+fn first_root<const M: usize>(c: &[f64], end: f64) -> Option<f64> {
     let degree = c.len() - 1;
     // derivatives[k] is the polynomial of degree k.
-    let mut derivatives = [[0.0; ROOM]; ROOM];
+    let mut derivatives = [[0.0; M]; M];
     derivatives[degree][..=degree].copy_from_slice(c);
     for k in (1..degree).rev() {
         for i in 0..=k {
             derivatives[k][i] = derivatives[k + 1][i + 1] * (i + 1) as f64;
         }
     }
-    let mut cuts = [0.0; ROOM];
+    let mut cuts = [0.0; M];
     let mut count = 0;
     for k in 1..=degree {
         let c = &derivatives[k][..=k];
-        let mut roots = [0.0; ROOM];
+        let mut roots = [0.0; M];
         let mut found = 0;
         let mut low = 0.0;
         let mut at_low = c[0];
@@ -155,7 +163,7 @@ fn first_root(c: &[f64], end: f64) -> Option<f64> {
             let high = if piece < count { cuts[piece] } else { end };
             let at_high = value(c, high);
             if (at_low < 0.0) != (at_high < 0.0) {
-                let root = newton(c, low, high, at_low < 0.0);
+                let root = newton(c, [low, high], at_low < 0.0, 1e-12 * end);
                 if k == degree {
                     return Some(root);
                 }

@@ -11,6 +11,7 @@ mod exact;
 mod kernel;
 mod outer;
 mod place;
+mod stream;
 
 use fearless_simd::Level;
 use glam::DVec3;
@@ -154,12 +155,7 @@ impl Certified {
     ) -> Answers {
         let mut answers = self.in_lanes(level, packet, packet.active, false, workspace);
         let mut open = packet.active & !(answers.found | answers.absent);
-        let blurred = if wish.sharp {
-            answers.blurred & answers.found
-        } else {
-            0
-        };
-        let again = open | blurred;
+        let again = answers.unfinished(packet, wish);
         if again != 0 {
             let sharper = self.in_lanes(level, packet, again, true, workspace);
             let decided = sharper.found | sharper.absent;
@@ -172,12 +168,25 @@ impl Certified {
         if wish.exact {
             for lane in lanes(open) {
                 answers.tiers[lane] = Tier::Exact;
-                if !self.multiple_root(level, packet, lane, &mut answers, workspace) {
-                    self.decide(packet, lane, &mut answers);
-                }
+                self.settle(level, packet, lane, &mut answers, workspace);
             }
         }
         answers
+    }
+
+    /// A lane that double-double leaves undecided.
+    #[cold]
+    fn settle(
+        &self,
+        level: Level,
+        packet: &Packet,
+        lane: usize,
+        answers: &mut Answers,
+        workspace: &mut Workspace,
+    ) {
+        if !self.multiple_root(level, packet, lane, answers, workspace) {
+            self.decide(packet, lane, answers);
+        }
     }
 
     /// One arithmetic's answers.
@@ -324,15 +333,27 @@ impl Certified {
 impl Answers {
     /// Takes a lane over from other answers.
     fn take(&mut self, from: &Self, lane: usize) {
-        let bit = 1 << lane;
-        self.found = self.found & !bit | from.found & bit;
-        self.absent = self.absent & !bit | from.absent & bit;
-        self.t[lane] = from.t[lane];
-        self.low[lane] = from.low[lane];
-        self.high[lane] = from.high[lane];
-        self.multiplicity[lane] = from.multiplicity[lane];
-        self.doubt[lane] = from.doubt[lane];
-        self.stretch[lane] = from.stretch[lane];
+        self.take_from(from, lane, lane);
+    }
+
+    /// Takes lane `at` of other answers as lane `to`.
+    fn take_from(&mut self, from: &Self, at: usize, to: usize) {
+        let bit = |set: u32| (set >> at & 1) << to;
+        self.found = self.found & !(1 << to) | bit(from.found);
+        self.absent = self.absent & !(1 << to) | bit(from.absent);
+        self.t[to] = from.t[at];
+        self.low[to] = from.low[at];
+        self.high[to] = from.high[at];
+        self.multiplicity[to] = from.multiplicity[at];
+        self.doubt[to] = from.doubt[at];
+        self.stretch[to] = from.stretch[at];
+    }
+
+    /// Lanes that are to be asked again: undecided ones, and blurred ones if wished.
+    fn unfinished(&self, packet: &Packet, wish: Wish) -> u32 {
+        let open = packet.active & !(self.found | self.absent);
+        let blurred = self.blurred & self.found;
+        open | if wish.sharp { blurred } else { 0 }
     }
 }
 
