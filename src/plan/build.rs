@@ -4,7 +4,9 @@ use glam::DVec3;
 
 use super::PlanError;
 use super::choose::Choices;
-use super::extent::{about_camera, columns, is_similarity, perpendicular, translation};
+use super::extent::{
+    about_camera, columns, is_right_circular, is_similarity, perpendicular, translation,
+};
 use super::occluders::occluders;
 use crate::camera::LaneCamera;
 use crate::integrate::develop::Spectrometer;
@@ -12,7 +14,8 @@ use crate::integrate::list::List;
 use crate::integrate::model::{Checker, Many, Model, ObjectShading, Scatter};
 use crate::integrate::parts::Parts;
 use crate::light::{
-    CubeLight, LaneLight, LightShape, PlanarLight, RectangleLight, SmallLights, SphereLight,
+    CubeLight, CylinderLight, LaneLight, LightShape, PlanarLight, RectangleLight, SmallLights,
+    SphereLight,
 };
 use crate::math::affine::Affine;
 use crate::math::lanes::Scalar;
@@ -405,6 +408,12 @@ fn area_light<T: Scalar>(
                 LightShape::Cube(CubeLight::new(centre, [a, b, c], normals, emits)),
                 area,
             ))
+        }
+        Shape::Cylinder if is_right_circular(&placement.to_world) => {
+            let (radius, height) = (a.length(), 2.0 * c.length());
+            let area = 2.0 * std::f64::consts::PI * radius * (radius + height);
+            let light = CylinderLight::new(centre, [a, b], c, emits);
+            Some((LightShape::Cylinder(light), area))
         }
         Shape::Sphere | Shape::Cylinder | Shape::Plane | Shape::Implicit(_) => None,
     }
