@@ -4,6 +4,7 @@ mod cli;
 mod cli_render;
 mod film_files;
 mod fresnel;
+mod implicit_afar;
 mod implicit_expression;
 mod implicit_field;
 mod implicit_interval;
