@@ -2,6 +2,7 @@
 
 mod cli;
 mod cli_render;
+mod failure_maps;
 mod film_files;
 mod fresnel;
 mod implicit_afar;
