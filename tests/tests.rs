@@ -8,6 +8,7 @@ mod fresnel;
 mod implicit_afar;
 mod implicit_expression;
 mod implicit_field;
+mod implicit_fuzz;
 mod implicit_interval;
 mod implicit_invented;
 mod implicit_oracle;
