@@ -11,7 +11,7 @@ use std::time::Duration;
 use etalon::integrate::chunk;
 use etalon::plan::{Plan, explain};
 use etalon::render::tile::Window;
-use etalon::render::{Progress, Request, instructions, render, replay};
+use etalon::render::{Instructions, Progress, Request, render, replay};
 use etalon::scene::{Overrides, parse};
 use glam::DVec3;
 
@@ -44,7 +44,7 @@ fn seen_from_afar(distance: f64, material: &str) -> Plan {
 /// Segments that begin on the sphere, and those of them that end where they cannot.
 fn departures(plan: &Plan) -> [usize; 2] {
     let [mut all, mut wrong] = [0; 2];
-    let level = instructions(None).unwrap();
+    let level = Instructions::best();
     for k in 0..16 * 16 * 4 {
         let (pixel, sample) = (k / 4, k % 4);
         let (x, y) = (pixel % 16, pixel / 16);
@@ -137,7 +137,7 @@ fn scaled(scale: f64) -> Vec<[u64; 3]> {
         window: Window { x0, y0, x1, y1 },
         samples: 8,
         time: None,
-        instructions: instructions(None).unwrap(),
+        instructions: Instructions::best(),
     };
     let rendered = render(&plan, &request, &mut Silent);
     let pixels = rendered.xyz();

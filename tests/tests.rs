@@ -18,6 +18,7 @@ mod lanes_support;
 mod lights;
 mod many_objects;
 mod mirror_chains;
+mod occluders;
 mod oracle_primitives;
 mod oracle_support;
 mod sampling;

@@ -8,6 +8,7 @@ use super::extent::{about_camera, columns, is_similarity, perpendicular, transla
 use super::occluders::occluders;
 use crate::camera::LaneCamera;
 use crate::integrate::develop::Spectrometer;
+use crate::integrate::list::List;
 use crate::integrate::model::{Checker, Many, Model, ObjectShading, Scatter};
 use crate::integrate::parts::Parts;
 use crate::light::{
@@ -59,13 +60,14 @@ pub fn build<T: Scalar>(
         .as_ref()
         .map(|spectrum| builder.spectrum(spectrum));
     let lights = builder.pick();
-    let all = 0..scene.objects.len() as u32;
+    let all: Vec<u32> = (0..scene.objects.len() as u32).collect();
     let occluders = if choices.full {
-        all.collect()
+        all.clone()
     } else {
         let lit: Vec<u32> = lights.iter().map(|light| light.object).collect();
         occluders(scene, &lit, T::ROUNDOFF)
     };
+    let parts = Parts::new(&builder.shapes, &builder.shading);
     let many = builder.bounded.len() > LARGEST_LIST;
     let model = Model {
         hierarchy: many.then(|| {
@@ -85,8 +87,9 @@ pub fn build<T: Scalar>(
         ),
         max_depth: scene.image.max_depth.unwrap_or(u32::MAX),
         needs: choices.needs,
-        occluders,
-        parts: Parts::new(&builder.shapes, &builder.shading),
+        list: List::new(all, &builder.shapes, &parts.first),
+        occluders: List::new(occluders, &builder.shapes, &parts.first),
+        parts,
         shapes: builder.shapes,
         implicits: builder.implicits,
         shading: builder.shading,
@@ -185,8 +188,12 @@ impl<T: Scalar> Builder<T> {
         if !inverse.rows.iter().flatten().all(|x| x.is_finite()) {
             return None;
         }
-        self.shapes
-            .push(LaneShape::new(kind, &to_world, &inverse, self.reach));
+        self.shapes.push(LaneShape::new(
+            kind,
+            &to_world,
+            &inverse,
+            START * self.reach,
+        ));
         match &object.shape {
             Shape::Implicit(implicit) => {
                 let lanes = LaneImplicit::new(implicit, &to_world, &inverse).ok()?;
@@ -323,8 +330,9 @@ impl<T: Scalar> Builder<T> {
                 sum += 0.5 / count + 0.5 * power / total;
                 let end = if i == last { 1.0 } else { sum };
                 light.below = below;
-                // The probability is what the comparison with the *rounded* bounds realises.
-                let next = T::from_f64(end);
+                // Uniform numbers are multiples of the step in either precision: among such bounds
+                // the probability is exactly their distance.
+                let next = T::from_f64((end / PROBABILITY_STEP).round() * PROBABILITY_STEP);
                 light.probability = T::from_f64(next.to_f64() - below.to_f64());
                 below = next;
                 light
@@ -332,6 +340,13 @@ impl<T: Scalar> Builder<T> {
             .collect()
     }
 }
+
+/// How far rays usually start, over the largest coordinate of a bounded object: nearly all points
+/// that a camera sees of an infinite floor are within that.
+const START: f64 = 8.0;
+
+/// Step of the probabilities of lights: that of uniform numbers in single precision, 2⁻²⁴.
+const PROBABILITY_STEP: f64 = 1.0 / (1 << 24) as f64;
 
 /// Whether front and back emit.
 fn sides(sides: Sides) -> [bool; 2] {

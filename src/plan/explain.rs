@@ -332,8 +332,14 @@ pub fn doubt(plan: &Plan) -> Option<String> {
 
 fn intersection(scene: &Scene, plan: &Plan) -> String {
     let (hierarchy, occluders) = match &plan.tables {
-        Tables::Single(tables) => (tables.0.hierarchy.is_some(), tables.0.occluders.len()),
-        Tables::Double(tables) => (tables.0.hierarchy.is_some(), tables.0.occluders.len()),
+        Tables::Single(tables) => (
+            tables.0.hierarchy.is_some(),
+            tables.0.occluders.objects.len(),
+        ),
+        Tables::Double(tables) => (
+            tables.0.hierarchy.is_some(),
+            tables.0.occluders.objects.len(),
+        ),
     };
     let count = scene.objects.len();
     let mut text = format!(
