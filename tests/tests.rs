@@ -2,10 +2,13 @@
 
 mod cli;
 mod cli_render;
+mod failure_maps;
 mod film_files;
 mod fresnel;
+mod implicit_afar;
 mod implicit_expression;
 mod implicit_field;
+mod implicit_fuzz;
 mod implicit_interval;
 mod implicit_invented;
 mod implicit_oracle;
@@ -14,8 +17,10 @@ mod lane_shapes;
 mod lanes_support;
 mod lights;
 mod many_objects;
+mod mirror_chains;
 mod occluders;
 mod oracle_primitives;
+mod oracle_support;
 mod sampling;
 mod scene_file;
 mod shape_ladder;

@@ -300,6 +300,13 @@ pub struct Finders {
     /// Paint the pixels of this surface instead.
     #[arg(long, value_name = "SURFACE")]
     pub map: Option<String>,
+    /// Map where each method fails instead: all shapes and precisions over families of rays that grow
+    /// harder.
+    #[arg(long, conflicts_with_all = ["map", "rays", "shapes"])]
+    pub failures: bool,
+    /// Rays a shape, family and difficulty of the failure maps.
+    #[arg(long, value_name = "RAYS", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub count: u32,
     /// Width and height of each map in pixels.
     #[arg(long, value_name = "PIXELS", default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub size: u32,

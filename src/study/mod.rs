@@ -1,3 +1,4 @@
 //! Comparisons that are worth a chart.
 
+pub mod failures;
 pub mod finders;
