@@ -187,41 +187,47 @@ def observer_table():
 
 @finding
 def inside_of_an_emitting_sphere():
-    """Albedo 0.5, emission 0.5, all round: 1 is right."""
-    values = {}
+    """Albedo and emission 0.5 all round, seen from 5 units off the middle: 1 is right."""
+    values = []
     grey = {"type": "diffuse", "reflectance": {"type": "uniform", "value": 0.5}}
     light = {"type": "area", "radiance": {"type": "uniform", "value": 0.5}}
-    for kind in ("sphere", "cube"):
-        shape = {"type": kind, "flip_normals": True, "bsdf": grey, "emitter": light, "to_world": transform(np.eye(4) * [10, 10, 10, 1])}
+    for kind, size in (("sphere", 5.2), ("sphere", 10), ("sphere", 100), ("cube", 10), ("cube", 100)):
+        to_world = transform(np.diag([size, size, size, 1.0]))
+        shape = {"type": kind, "flip_normals": True, "bsdf": grey, "emitter": light, "to_world": to_world}
         replicates = [picture({"shape": shape}, spp=4096, seed=seed)[..., 1].mean() for seed in range(4)]
         mean = np.mean(replicates) / mitsuba_scene.ETALON_Y_INTEGRAL * mitsuba_scene.MITSUBA_Y_INTEGRAL
-        values[kind] = f"`{kind}` {mean:.5f} ± {np.std(replicates, ddof=1) / 2:.5f}"
-    return ", ".join(values.values())
+        values.append(f"`{kind}` of half size {size}: {mean:.5f} ± {np.std(replicates, ddof=1) / 2:.5f}")
+    return ", ".join(values)
 
 
 @finding
 def response_on_hdrfilm():
-    """A sensor response of 1 at all wavelengths, which should change nothing."""
-    nm = np.array([360.0, 830.0])
-    sensor = {"srf": mitsuba_scene.spectrum((nm, np.ones(2)))}
-    plain, response = (
-        picture({"sky": flat()}, spp=4096, sampler="multijitter", sensor=s)[..., :3].mean(axis=(0, 1)) for s in ({}, sensor)
-    )
-    band = {"type": "specfilm", "box": mitsuba_scene.box(500, 600)}
-    film = mitsuba_scene.make_film((16, 16), "standard") | band
+    """A sensor response on `hdrfilm`, Y over the true one; and a band on `specfilm`, which should be 1."""
+    cells = []
+    ramp, edges = np.array([[360.0, 0.0], [830, 1]]), np.array([[499.95, 0], [500.05, 1], [599.95, 1], [600.05, 0]])
+    for name, (nm, values) in {"a ramp": ramp.T, "a box": edges.T}.items():
+        sensor = {"srf": mitsuba_scene.spectrum((nm, values))}
+        y = picture({"sky": flat()}, spp=4096, sampler="multijitter", sensor=sensor)[..., 1].mean()
+        fine = np.linspace(360, 830, 47001)
+        weight = np.interp(fine, nm, values) * np.interp(fine, spectra.WHOLE_NM, spectra.observer()[0][1])
+        cells.append(f"`hdrfilm` {name} {y * mitsuba_scene.MITSUBA_Y_INTEGRAL / np.trapezoid(weight, fine):.5f}")
+    film = mitsuba_scene.make_film((16, 16), "standard") | {"type": "specfilm", "box": mitsuba_scene.box(500, 600)}
     film.pop("pixel_format")
     box = picture({"sky": flat()}, spp=4096, sampler="multijitter", film=film)[..., 0].mean() / 100
-    return f"`hdrfilm` XYZ {np.round(plain, 4)} without, {np.round(response, 4)} with it; `specfilm`, band of 500 to 600 nm: {box:.5f}"
+    return ", ".join(cells) + f", `specfilm` {box:.5f}"
 
 
 @finding
 def single_precision_sums():
-    """Y of one picture of constant radiance 1 with many samples, over that with few."""
-    ratios = []
-    few = picture({"sky": flat()}, spp=4096, sampler="multijitter", size=(2, 2))[..., 1].mean()
-    for spp in (65536, 262144, 1048576):
-        ratios.append(f"{spp} spp {picture({'sky': flat()}, spp=spp, sampler='multijitter', size=(2, 2))[..., 1].mean() / few - 1:+.2%}")
-    return ", ".join(ratios)
+    """Y of one picture of constant radiance with many samples, over that with few."""
+    cells = []
+    options = {"size": (4, 4)}
+    for value in (0.11, 1.0):
+        few = picture({"sky": flat(value)}, spp=4096, sampler="multijitter", **options)[..., 1].mean()
+        for spp in (65536, 262144, 1048576):
+            many = picture({"sky": flat(value)}, spp=spp, **options)[..., 1].mean()
+            cells.append(f"radiance {value}, {spp} spp {many / few - 1:+.3%}")
+    return ", ".join(cells)
 
 
 @finding
@@ -233,17 +239,17 @@ def sample_counts():
 
 @finding
 def samplers_between_seeds():
-    """Mean over pixels of the squared error of 64 joined pictures, over what their spread promises."""
+    """Mean over pixels of the squared error of 256 joined pictures, over what their spread promises."""
     scene = {
         "ball": {"type": "sphere", "radius": 0.7, "bsdf": {"type": "diffuse"}},
         "lamp": {"type": "point", "position": [1, 2, 3], "intensity": {"type": "uniform", "value": 1.0}},
         "sky": flat(0.2),
     }
-    options = {"size": (24, 24), "depth": 3}
-    truth, variance = joined(scene, "independent", 64, 4096, 500, options)
+    options = {"size": (16, 16), "depth": 3}
+    truth, variance = joined(scene, "multijitter", 256, 1024, 1000, options)
     cells = []
     for kind in ("independent", "multijitter", "stratified", "orthogonal", "ldsampler"):
-        mean, own = joined(scene, kind, 64, 16, 0, options)
+        mean, own = joined(scene, kind, 256, 64, 0, options)
         seen = own > 0
         cells.append(f"`{kind}` {np.mean((mean - truth)[seen] ** 2) / np.mean((own + variance)[seen]):.2f}")
     return ", ".join(cells) + " (1 is right)"
