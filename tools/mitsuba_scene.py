@@ -96,6 +96,8 @@ class Builder:
     def build(self, sampler, seed, film):
         """The whole scene; see [`render`] for the choices."""
         image = self.scene["image"]
+        if image.get("sampler") == "center":
+            raise SceneError('sampler = "center" has no counterpart: Mitsuba\'s samplers fill the pixel')
         result = {
             "type": "scene",
             "integrator": {"type": "path", "max_depth": image.get("max_depth", -1)},

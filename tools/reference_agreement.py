@@ -12,9 +12,16 @@ import etalon
 import reference_file
 
 
-def student_limit(level, freedom):
-    """|t| that is exceeded with this probability, both sides."""
-    return float(stats.t.isf(level / 2, freedom))
+def welch(a, b, level):
+    """Difference of two (mean, standard error, replicates) in combined standard errors, and what it
+    exceeds by chance with probability `level`: Student's t with the degrees of freedom of Welch
+    (1947)."""
+    (mean_a, error_a, count_a), (mean_b, error_b, count_b) = a, b
+    error = math.hypot(error_a, error_b)
+    if error == 0:
+        return (0.0 if mean_a == mean_b else math.inf), 0.0
+    freedom = error**4 / (error_a**4 / (count_a - 1) + error_b**4 / (count_b - 1))
+    return (mean_a - mean_b) / error, float(stats.t.isf(level / 2, freedom))
 
 
 def heading():
@@ -51,9 +58,9 @@ def compare(reference, path, arguments):
             continue
         own = ours[:, index].std(ddof=1) / math.sqrt(len(ours))
         error = math.hypot(own, errors[name])
-        z = (a - b) / error if error else math.copysign(math.inf, a - b) if a != b else 0.0
+        z, limit = welch((a, own, len(ours)), (b, errors[name], header["replicates"]), 1e-3)
         print(
             f"| {reference.name} | {name} | {a:.6g} | {b:.6g} | {1e2 * (a / b - 1):+.3f} % "
-            f"| {1e2 * error / b:.3f} % | {z:+.2f} |",
+            f"| {1e2 * error / b:.3f} % | {z:+.2f}{' (!)' if abs(z) > limit else ''} |",
             flush=True,
         )
