@@ -14,6 +14,7 @@ mod lane_shapes;
 mod lanes_support;
 mod lights;
 mod many_objects;
+mod metrics;
 mod oracle_primitives;
 mod sampling;
 mod scene_file;

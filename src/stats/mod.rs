@@ -1,0 +1,3 @@
+//! Statistics over slices of numbers: no knowledge of images or scenes.
+
+pub mod metrics;
