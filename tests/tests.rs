@@ -22,6 +22,7 @@ mod shape_ladder;
 mod shape_list;
 mod soundness;
 mod spectrum;
+mod statistics;
 mod statistics_support;
 mod truth_file;
 mod truths;
