@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use etalon::film;
 use etalon::plan::PlanError;
 use etalon::render::bins::BinError;
+use etalon::render::target::Singular;
 use etalon::scene::SceneError;
 use etalon::study::finders::OracleError;
 
@@ -21,11 +22,8 @@ pub enum CommandError {
     #[error(transparent)]
     Rays(#[from] RayError),
     /// An object's matrix has no inverse.
-    #[error("error: the object \"{name}\" has a transform that is not invertible")]
-    Singular {
-        /// The object.
-        name: String,
-    },
+    #[error("error: {0}")]
+    Singular(#[from] Singular),
     /// A file of the comparison of finders cannot be read.
     #[error("error: cannot read {}: {reason}", path.display())]
     Table {
