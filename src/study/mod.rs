@@ -1,3 +1,4 @@
-//! Comparisons that are worth a chart.
+//! Comparisons: of pictures with pictures and with truths, and of methods with each other.
 
+pub mod compare;
 pub mod finders;
