@@ -8,20 +8,26 @@ that an equal-energy spectrum of value 1 has Y = 1. Results here are multiplied 
 106.8569149. Mitsuba's observer has 5 nm steps, which leaves up to 2e-3 in X and Z and 1e-3 in Y of a
 red or green paint; `--film observer` makes it use the published 1 nm table (and its wavelengths).
 
-What is not the same: dispersion (Mitsuba's glass has the index at 550 nm at every wavelength), and a
-plane is a square that ends 1000 camera distances away. Implicit surfaces, a lens in parallel projection,
-checkerboards on anything but flat squares and emitting spheres that are ellipsoids have no counterpart.
+What is not the same: dispersion (Mitsuba's glass has the index at 550 nm at every wavelength;
+reference.py goes one wavelength at a time), a plane is a square that ends 1000 camera distances away,
+and an implicit surface is a fine mesh (implicit_mesh.py). A lens in parallel projection, checkerboards
+on anything but flat squares, emitting spheres that are ellipsoids and emitting implicit surfaces have no
+counterpart.
 Russian roulette starts at Mitsuba's own default depth.
 """
 
 import argparse
+import json
 import sys
 import warnings
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import mitsuba as mi
 import numpy as np
 
+import implicit_mesh
 import scene_file
 import spectra
 from scene_file import SceneError
@@ -69,10 +75,11 @@ def transform(matrix):
 
 
 class Builder:
-    """One scene file on its way to a Mitsuba dict."""
+    """One scene file on its way to a Mitsuba dict; glass has the index at `wavelength` nm."""
 
-    def __init__(self, scene, folder):
+    def __init__(self, scene, folder, wavelength=None):
         self.scene = scene
+        self.wavelength = wavelength
         self.spectra = spectra.Spectra(scene.get("spectra", {}), folder)
         camera = scene["camera"]
         self.view = np.linalg.norm(np.subtract(camera["to"], camera["from"]))
@@ -93,7 +100,7 @@ class Builder:
             "integrator": {"type": "path", "max_depth": image.get("max_depth", -1)},
             "sensor": self.sensor()
             | {
-                "film": make_film(image["size"], film),
+                "film": film,
                 "sampler": {"type": sampler, "sample_count": image["spp"], "seed": seed},
             },
         }
@@ -156,6 +163,10 @@ class Builder:
     def shapes(self, place, material, key, extra):
         """The Mitsuba shapes of a placed shape with the further properties `extra`."""
         bsdf = {"bsdf": self.bsdf(place, material)}
+        if place.kind == "implicit":
+            if extra:
+                raise SceneError(f"{place.name}: a mesh of an implicit surface that emits is no counterpart")
+            return {key: implicit_shape(place, bsdf["bsdf"])}
         to_world = unmirrored(place.to_world)
         if place.kind == "plane":
             to_world = to_world @ np.diag([*plane_scale(to_world, self.view), 1, 1])
@@ -183,7 +194,9 @@ class Builder:
         if "mirror" in material:
             return two_sided(self.conductor(material["mirror"]))
         if "glass" in material:
-            return {"type": "dielectric", "int_ior": glass_index(material["glass"], place.name), "ext_ior": 1.0}
+            if self.wavelength is None and has_dispersion(material["glass"]):
+                warnings.warn(f"{place.name}: Mitsuba has no dispersion; n is that at 550 nm", stacklevel=2)
+            return {"type": "dielectric", "int_ior": glass_index(material["glass"], self.wavelength), "ext_ior": 1.0}
         if "checkerboard" in material:
             return two_sided({"type": "diffuse", "reflectance": self.checkerboard(place, material)})
         return two_sided({"type": "diffuse", "reflectance": spectrum(0.0)})
@@ -258,44 +271,102 @@ def moved(place, side):
         matrix = scene_file.step({"translate": shift if side == "front" else -shift}) @ matrix
     elif side == "back":
         matrix = matrix @ np.diag([1 - SIDES_GAP] * 3 + [1])
-    return scene_file.Placed(place.kind, place.name, place.material, place.size, matrix)
+    return replace(place, to_world=matrix)
 
 
-def glass_index(glass, name):
-    """The index of refraction at 550 nm, with a warning if it is another elsewhere."""
-    squared = 0.55**2
-    if isinstance(glass, dict) and "ior" in glass:
+def has_dispersion(glass):
+    """Whether the index of refraction depends on the wavelength."""
+    return not (isinstance(glass, dict) and "ior" in glass)
+
+
+def glass_index(glass, nm=None):
+    """The index of refraction at a wavelength, 550 nm if none is given."""
+    squared = (1e-3 * (nm or 550)) ** 2
+    if not has_dispersion(glass):
         return float(glass["ior"])
     if isinstance(glass, dict) and "cauchy" in glass:
-        index = sum(a / squared**i for i, a in enumerate(glass["cauchy"]))
-    else:
-        b, c = GLASSES[glass.lower()] if isinstance(glass, str) else (glass["sellmeier"]["b"], glass["sellmeier"]["c"])
-        index = np.sqrt(1 + sum(b * squared / (squared - c) for b, c in zip(b, c, strict=True)))
-    warnings.warn(f"{name}: Mitsuba has no dispersion, n = {index:.6f} at every wavelength", stacklevel=2)
-    return float(index)
+        return float(sum(a / squared**i for i, a in enumerate(glass["cauchy"])))
+    b, c = GLASSES[glass.lower()] if isinstance(glass, str) else (glass["sellmeier"]["b"], glass["sellmeier"]["c"])
+    return float(np.sqrt(1 + sum(b * squared / (squared - c) for b, c in zip(b, c, strict=True))))
 
 
-def make_film(size, kind):
+@cache
+def implicit_mesh_of(text):
+    """Field and mesh of the shape that a JSON text describes."""
+    field = implicit_mesh.Field(json.loads(text))
+    return field, implicit_mesh.mesh(field)
+
+
+def implicit_shape(place, bsdf):
+    """A Mitsuba mesh of an implicit surface, with smooth normals."""
+    try:
+        _, (vertices, normals, triangles) = implicit_mesh_of(json.dumps(place.form))
+    except SceneError as error:
+        raise SceneError(f"{place.name}: {error}") from None
+    linear = place.to_world[:3, :3]
+    vertices = vertices @ linear.T + place.to_world[:3, 3]
+    normals = implicit_mesh.unit(normals @ np.linalg.inv(linear))
+    if np.linalg.det(linear) < 0:
+        triangles = triangles[:, ::-1]
+    properties = mi.Properties()
+    properties["bsdf"] = mi.load_dict(bsdf)
+    shape = mi.Mesh("implicit", len(vertices), len(triangles), props=properties, has_vertex_normals=True)
+    values = mi.traverse(shape)
+    values["vertex_positions"] = np.ravel(vertices).astype(np.float32)
+    values["vertex_normals"] = np.ravel(normals).astype(np.float32)
+    values["faces"] = np.ravel(triangles).astype(np.uint32)
+    values.update()
+    return shape
+
+
+def mesh_notes(tables):
+    """What the meshes of a scene are and how far they are from their surfaces, in object coordinates."""
+    notes = []
+    for entry in tables.get("object", []):
+        place = scene_file.placed(entry)
+        if place.kind == "implicit":
+            field, parts = implicit_mesh_of(json.dumps(place.form))
+            found = implicit_mesh.distances(field, *parts)
+            notes.append(
+                f"{place.name}: mesh of {len(parts[2])} triangles; largest distance to the surface "
+                f"{found['outside']:.1e}, mean {found['mean']:.1e}; of the surface to it {found['missed']:.1e}; "
+                f"99.9 % of normals within {found['normal']:.1e} rad"
+            )
+    return notes
+
+
+def box(low, high):
+    """The sensitivity 1 between two wavelengths in nm. Its edges are ramps of 0.1 nm about them,
+    which changes the mean of a smooth spectrum by less than 1e-6."""
+    ramp = 0.05
+    nm = np.array([low - ramp, low + ramp, high - ramp, high + ramp])
+    return spectrum((nm, np.array([0.0, 1.0, 1.0, 0.0])))
+
+
+def make_film(size, kind, bands=()):
     """A film with a box filter in single precision: "standard", Mitsuba's own XYZ, or "observer",
-    three bands with the published colour-matching functions."""
+    the published colour-matching functions and further `bands` [low, high] in nm."""
     film = {"width": size[0], "height": size[1], "component_format": "float32", "rfilter": {"type": "box"}}
     if kind == "standard":
         return film | {"type": "hdrfilm", "pixel_format": "xyz"}
     bars, _ = spectra.observer()
-    bands = {f"band{i}": spectrum((spectra.WHOLE_NM, bar)) for i, bar in enumerate(bars)}
-    return film | {"type": "specfilm"} | bands
+    # Mitsuba sorts channels by name.
+    responses = {f"axis{i}": spectrum((spectra.WHOLE_NM, bar)) for i, bar in enumerate(bars)}
+    responses |= {f"band{i:03}": box(*band) for i, band in enumerate(bands)}
+    return film | {"type": "specfilm"} | responses
 
 
 def load(path, panel=None, image=None, sampler="independent", seed=0, film="standard"):
     """A scene file as a Mitsuba scene; `image` replaces keys of its [image]."""
     tables = scene_file.load(path, panel)
     tables["image"] = tables["image"] | (image or {})
+    film = make_film(tables["image"]["size"], film)
     return mi.load_dict(Builder(tables, Path(path).parent).build(sampler, seed, film))
 
 
 def render(scene, seed=0):
     """Linear XYZ in etalon's normalisation (height×width×3, float64) of a loaded scene."""
-    xyz = np.array(mi.render(scene, seed=seed), np.float64)
+    xyz = np.array(mi.render(scene, seed=seed), np.float64)[..., :3]
     observer = scene.sensors()[0].film().class_name() == "SpecFilm"
     return xyz / ETALON_Y_INTEGRAL * (1 if observer else MITSUBA_Y_INTEGRAL)
 
