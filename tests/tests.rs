@@ -17,6 +17,7 @@ mod many_objects;
 mod metrics;
 mod occluders;
 mod oracle_primitives;
+mod references;
 mod sampling;
 mod scene_file;
 mod shape_ladder;
