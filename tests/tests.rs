@@ -2,6 +2,8 @@
 
 mod cli;
 mod cli_render;
+mod compare;
+mod convergence;
 mod film_files;
 mod fresnel;
 mod implicit_expression;
@@ -15,6 +17,7 @@ mod lanes_support;
 mod lights;
 mod many_objects;
 mod metrics;
+mod mistakes;
 mod occluders;
 mod oracle_primitives;
 mod references;

@@ -6,9 +6,11 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use etalon::stats::Estimate;
+use etalon::stats::metrics::Metric;
 use etalon::study::compare::stale::{Freshness, different_scenes, freshness};
 use etalon::study::compare::{
-    ChannelMetrics, Judgement, LEVEL, Metrics, Side, against_truth, judge, metrics, write_heatmap,
+    ChannelMetrics, Judgement, LEVEL, Metrics, Side, against_truth, flip, judge, metrics,
+    write_heatmap,
 };
 use serde::Serialize;
 
@@ -30,6 +32,8 @@ struct Report {
     channels: Vec<ChannelMetrics>,
     /// The metrics of R, G and B together.
     rgb: Option<Metrics>,
+    /// HDR-FLIP of B and A, the mean over the pixels.
+    flip: Option<Metric>,
     /// The verdict, where variances are known.
     judgement: Option<Judgement>,
     /// The relative difference at the ends of the heat map's scale.
@@ -97,12 +101,17 @@ fn with_picture(arguments: &Compare, a: &Side, b: &Side) -> Result<Report, Comma
     if arguments.heatmap.is_some() && heatmap_scale.is_none() {
         notes.push("no heat map: a picture has no R, G, B".to_owned());
     }
+    let flip = match (a.rgb(), b.rgb()) {
+        (Some(own), Some(reference)) => Some(Metric::mean(&flip(&reference, &own, a.width))),
+        _ => None,
+    };
     Ok(Report {
         a: a.path.clone(),
         with: With::B(b.path.clone()),
         size: [a.width, a.height],
         channels,
         rgb,
+        flip,
         judgement: judge(a, b, LEVEL),
         heatmap_scale,
         notes,
@@ -116,6 +125,7 @@ fn with_number(a: &Side, truth: f64) -> Report {
         size: [a.width, a.height],
         channels: Vec::new(),
         rgb: None,
+        flip: None,
         judgement: against_truth(a, truth, LEVEL),
         heatmap_scale: None,
         notes: stale(a).into_iter().collect(),

@@ -4,8 +4,8 @@
 use etalon::plan::Plan;
 use etalon::study::agreement::{Case, Levels, Planned, decide, plan};
 
-use crate::planted::{Mistake, plant};
-use crate::scenes::{SCENES, scene};
+use super::planted::{Mistake, plant};
+use super::scenes::{SCENES, scene};
 
 /// Probability of a false alarm of the whole suite.
 pub const LEVEL: f64 = 1e-3;

@@ -68,6 +68,13 @@ fn push_metrics(text: &mut String, report: &Report) {
             metrics,
         );
     }
+    if let Some(flip) = &report.flip {
+        let _ = writeln!(
+            text,
+            "HDR-FLIP {:.4} (0 looks the same, 1 is the worst)",
+            flip.value
+        );
+    }
     text.push_str("± one standard error, from the spread over the pixels\n");
 }
 

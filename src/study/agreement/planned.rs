@@ -2,15 +2,15 @@
 
 use super::{Case, ROUNDS};
 use crate::film::names;
+use crate::stats::verdict::POWER;
 use crate::stats::{Estimate, student};
 use crate::study::compare::{Channel, Side, mean_over};
 
 /// Tolerance of image means, relative, where samples and reference can show that much.
 pub const DELTA: f64 = 1e-3;
-/// Probability of getting through a whole case in the first round, if everything is right.
+/// Probability with which all of a case's questions are answered in the first round, if everything
+/// is right and their tolerances can be chosen.
 const FIRST_ROUND: f64 = 0.99;
-/// Smallest tolerance: below, single precision and the tables of other renderers begin to show.
-const LEAST: f64 = DELTA;
 
 /// A number of the picture: the mean of a channel over a region, or all pixels.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,8 +58,8 @@ impl Question {
 }
 
 /// Plans a case from a pilot of `pilot_spp` paths per pixel, which is not used again. At most
-/// `most` camera paths are spent on the first round; a question at `level` is answered in it with
-/// high probability.
+/// `most` camera paths are spent on the first round, fewer where those show all image means of R, G, B
+/// to be within [`DELTA`]; every other tolerance is what these samples allow at `level`.
 #[must_use]
 pub fn plan(
     case: &Case,
@@ -69,31 +69,36 @@ pub fn plan(
     level: f64,
 ) -> Planned {
     let questions = questions(case, pilot, reference);
-    // All of a case's questions get through together with the probability wanted.
     let missed = (1.0 - FIRST_ROUND) / questions.len() as f64;
-    let needed = |freedom: f64| {
-        student::critical(level / f64::from(ROUNDS), freedom) + student::critical(missed, freedom)
-    };
     // The squared error of a mean falls at least as 1/N.
-    let error = |question: &Question, spp: u32| {
+    let error = |question: &Question, spp: u32, missed: f64| {
         let (difference, mean) = question.ask(case, pilot, reference)?;
-        let (fixed, _) = question.ask(case, reference, reference)?;
-        let reference = fixed.standard_error * fixed.standard_error / 2.0;
-        let own = difference.standard_error * difference.standard_error - reference;
+        let (twice, _) = question.ask(case, reference, reference)?;
+        let fixed = twice.standard_error * twice.standard_error / 2.0;
+        let own = difference.standard_error * difference.standard_error - fixed;
         let own = own.max(0.0) * f64::from(pilot_spp) / f64::from(spp);
-        Some(needed(difference.freedom) * (own + reference).sqrt() / mean)
+        let needed = student::critical(level / f64::from(ROUNDS), difference.freedom)
+            + student::critical(missed, difference.freedom);
+        Some(needed * (own + fixed).sqrt() / mean)
+    };
+    // A question whose tolerance is given may need a second round with the usual probability.
+    let shown = |question: &Question, spp: u32| {
+        error(question, spp, 1.0 - POWER).is_none_or(|error| error <= DELTA)
     };
     let pixels = reference.width as u64 * reference.height as u64;
     let mut spp = pilot_spp;
-    let wide = |question: &Question, spp: u32| error(question, spp).is_some_and(|e| e > DELTA);
     let is_mean = |q: &&Question| q.region.is_none() && names::RGB.contains(&q.channel.as_str());
     while 2 * u64::from(spp) * pixels <= most
-        && questions.iter().filter(is_mean).any(|q| wide(q, spp))
+        && !questions.iter().filter(is_mean).all(|q| shown(q, spp))
     {
         spp *= 2;
     }
     let judged = questions.into_iter().filter_map(|question| {
-        let tolerance = error(&question, spp)?.max(LEAST);
+        let tolerance = if shown(&question, spp) {
+            DELTA
+        } else {
+            error(&question, spp, missed)?
+        };
         Some(Question {
             tolerance,
             ..question
@@ -115,7 +120,7 @@ fn questions(case: &Case, picture: &Side, reference: &Side) -> Vec<Question> {
             let question = Question {
                 channel: channel.name.clone(),
                 region,
-                tolerance: LEAST,
+                tolerance: DELTA,
             };
             if question.ask(case, picture, reference).is_some() {
                 questions.push(question);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::Side;
-use crate::film::{Error, names, png};
+use crate::film::{Error, png};
 
 /// Luminance of linear RGB: Rec. ITU-R BT.709-6, item 3.2.
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
@@ -39,11 +39,8 @@ pub fn write_heatmap(path: &Path, a: &Side, b: &Side) -> Result<Option<f64>, Err
 }
 
 fn luminance(side: &Side) -> Option<Vec<f64>> {
-    let [r, g, b] = names::RGB.map(|name| side.channel(name));
-    let pixels = r?.values.iter().zip(&g?.values).zip(&b?.values);
-    let weighted =
-        |((r, g), b): ((&f64, &f64), &f64)| LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b;
-    Some(pixels.map(weighted).collect())
+    let weighted = |[r, g, b]: &[f64; 3]| LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b;
+    Some(side.rgb()?.iter().map(weighted).collect())
 }
 
 /// White at 0, to dark red at 1 and dark blue at −1, through a full colour half way.

@@ -7,6 +7,7 @@
 //! one level for the whole family. [`stale`] finds references whose scene has changed since.
 
 mod blocks;
+mod flip;
 mod heatmap;
 mod judge;
 mod measure;
@@ -14,6 +15,7 @@ mod side;
 pub mod stale;
 
 pub use blocks::{Block, LEAST_FREEDOM, blocks};
+pub use flip::flip;
 pub use heatmap::write_heatmap;
 pub use judge::{ChannelJudgement, Judgement, LEVEL, ROUNDING, against_truth, judge};
 pub use measure::{ChannelMetrics, Metrics, metrics};

@@ -80,6 +80,14 @@ impl Side {
         })
     }
 
+    /// The pixels' linear R, G, B, if the side has these channels.
+    #[must_use]
+    pub fn rgb(&self) -> Option<Vec<[f64; 3]>> {
+        let [r, g, b] = names::RGB.map(|name| self.channel(name));
+        let pixels = r?.values.iter().zip(&g?.values).zip(&b?.values);
+        Some(pixels.map(|((&r, &g), &b)| [r, g, b]).collect())
+    }
+
     /// The channel of this name.
     #[must_use]
     pub fn channel(&self, name: &str) -> Option<&Channel> {
