@@ -29,8 +29,8 @@ const MOST: u64 = 24_000_000;
 /// The lamp and the paints of the Cornell box are known up to 700 nm and drop to zero there, inside of
 /// a cell of the wavelength grid, of which the share f = 0.459 is lit. Every spectrum is averaged over
 /// the cell on its own, so that n factors give fⁿ instead of f: of the 20 nm that are lit in this band,
-/// 0.24 % are lost after one reflection and 0.35 % after two. The blocks show it; Y does not, which has
-/// 1e-6 of its weight there.
+/// 0.24 % are lost after one reflection and 0.35 % after two. The blocks show it; Y loses a few
+/// millionths.
 const KNOWN: [(&str, &str); 1] = [("cornell_box", "S0.705,000000nm")];
 
 fn root() -> &'static Path {

@@ -127,7 +127,7 @@ fn reflectance<T: Scalar>(model: &mut Model<T>) -> bool {
     true
 }
 
-/// The scene's only receiver is the plane y = 0, and `direction` has length 1.
+/// The scene's only receiver lies in the plane y = 0, and `direction` has length 1.
 fn cosine<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
     let mut found = false;
     let [light] = scene.lights.as_slice() else {
