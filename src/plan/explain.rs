@@ -149,6 +149,7 @@ fn strategy<T>(shape: &LightShape<T>) -> &'static str {
         LightShape::Disk(_) | LightShape::Parallelogram(_) => "by area",
         LightShape::Sphere(_) => "by the solid angle of its cone from outside, by area inside",
         LightShape::Cube(_) => "by the area of its visible faces",
+        LightShape::Cylinder(_) => "by the size of its visible parts",
         LightShape::Point(_) | LightShape::Directional(_) => "by its one direction",
     }
 }
@@ -302,8 +303,14 @@ fn precision(plan: &Plan) -> String {
 
 fn intersection(scene: &Scene, plan: &Plan) -> String {
     let (hierarchy, occluders) = match &plan.tables {
-        Tables::Single(tables) => (tables.0.hierarchy.is_some(), tables.0.occluders.len()),
-        Tables::Double(tables) => (tables.0.hierarchy.is_some(), tables.0.occluders.len()),
+        Tables::Single(tables) => (
+            tables.0.hierarchy.is_some(),
+            tables.0.occluders.objects.len(),
+        ),
+        Tables::Double(tables) => (
+            tables.0.hierarchy.is_some(),
+            tables.0.occluders.objects.len(),
+        ),
     };
     let count = scene.objects.len();
     let mut text = format!(
