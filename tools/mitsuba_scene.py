@@ -11,7 +11,7 @@ red or green paint; `--film observer` makes it use the published 1 nm table (and
 What is not the same: dispersion (Mitsuba's glass has the index at 550 nm at every wavelength;
 reference.py goes one wavelength at a time), a plane is a square that ends 1000 camera distances away,
 and an implicit surface is a fine mesh (implicit_mesh.py). A lens in parallel projection, checkerboards
-on anything but flat squares, emitting spheres that are ellipsoids and emitting implicit surfaces have no
+on anything but squares and cubes, emitting spheres that are ellipsoids and emitting implicit surfaces have no
 counterpart.
 Russian roulette starts at Mitsuba's own default depth.
 """
@@ -22,6 +22,7 @@ import sys
 import warnings
 from dataclasses import replace
 from functools import cache
+from itertools import product
 from pathlib import Path
 
 import mitsuba as mi
@@ -95,6 +96,8 @@ class Builder:
     def build(self, sampler, seed, film):
         """The whole scene; see [`render`] for the choices."""
         image = self.scene["image"]
+        if image.get("sampler") == "center":
+            raise SceneError('sampler = "center" has no counterpart: Mitsuba\'s samplers fill the pixel')
         result = {
             "type": "scene",
             "integrator": {"type": "path", "max_depth": image.get("max_depth", -1)},
@@ -162,6 +165,10 @@ class Builder:
 
     def shapes(self, place, material, key, extra):
         """The Mitsuba shapes of a placed shape with the further properties `extra`."""
+        if place.kind == "cube" and "checkerboard" in material:
+            if extra:
+                raise SceneError(f"{place.name}: a checkered cube that emits has no counterpart in Mitsuba")
+            return self.checkered_cube(place, material, key)
         bsdf = {"bsdf": self.bsdf(place, material)}
         if place.kind == "implicit":
             if extra:
@@ -186,6 +193,23 @@ class Builder:
             for part, (kind, local) in canonical_parts(place.kind).items()
         }
         return {key + part: shape for part, shape in parts.items()}
+
+    def checkered_cube(self, place, material, key):
+        """Six checkered rectangles: Mitsuba's texture is over u, v, the scene's over x, y, z."""
+        result = {}
+        for axis, side in product(range(3), (-1, 1)):
+            order = [(axis + 1) % 3, (axis + 2) % 3, axis]
+            face = np.zeros((4, 4))
+            face[order, range(3)], face[3, 3] = (1, 1, 1), 1
+            face[axis, 3] = side
+            size = np.array([*place.size[order[:2]], 1.0])
+            colours = material["checkerboard"]
+            if np.floor(side * place.size[axis] / material["cell"]) % 2:
+                colours = colours[::-1]
+            rectangle = replace(place, kind="rectangle", size=size, to_world=place.to_world @ face)
+            board = {"checkerboard": colours, "cell": material["cell"]}
+            result |= self.shapes(rectangle, board, f"{key}_face{axis}{'-+'[side > 0]}", {})
+        return result
 
     def bsdf(self, place, material):
         """The scattering of a material on a shape."""

@@ -19,7 +19,6 @@ from reference_file import BANDS
 STRATUM = 2.5
 # Width about a wavelength, nm. Its ends are whole multiples of 1/1024 nm, which single precision holds.
 LINE = 1 / 8
-FIRST_SEED = 20_000
 
 
 def has_dispersion(tables):
@@ -29,7 +28,7 @@ def has_dispersion(tables):
     return any(mitsuba_scene.has_dispersion(glass) for glass in glasses)
 
 
-def pictures(reference, first_seed=FIRST_SEED):
+def pictures(reference, first_seed):
     """Yields `reference.replicates` pictures (height×width×channel, float64): linear Rec. 709, then
     mean spectral radiance in each band."""
     tables = reference.tables()
@@ -83,8 +82,8 @@ def at_wavelength(reference, tables, nm, seed):
 
 
 def mean_and_variance(replicates):
-    """Mean over the replicates, variance of that mean, and both of the mean over all pixels, by
-    Welford's method."""
+    """Mean over the replicates and variance of that mean, by Welford's method; mean over all pixels
+    and its standard error, from the replicates' means alone."""
     count, mean, square, wholes = 0, 0.0, 0.0, []
     for picture in replicates:
         count += 1
