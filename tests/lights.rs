@@ -18,8 +18,9 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::{Job, PRECISIONS, Precision, best, on_each, same_bits};
-use crate::statistics_support::{chi_square, sidak, t_test};
+use crate::statistics_support::{chi_square, t_test};
 use crate::truth_file::truth;
+use etalon::stats::family::sidak;
 
 /// Level of all random tests of this module together.
 const FAMILY: f64 = 1e-4;

@@ -6,7 +6,9 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use etalon::scene::Overrides;
 
-use super::values::{Crop, Instructions, Layer, Panels, Pixel, PlanChoice, Seconds, Size, setting};
+use super::values::{
+    Crop, Instructions, Layer, Panels, Pixel, PlanChoice, Seconds, Size, finite, setting,
+};
 
 /// A physically based spectral renderer, and the instrument that proves its pictures right.
 #[derive(Debug, Parser)]
@@ -34,6 +36,8 @@ pub enum Command {
     Trace(Trace),
     /// Follow one camera path of a rendering and print each of its steps.
     Replay(Replay),
+    /// Compare a picture with another or with a number: metrics, and whether noise explains it.
+    Compare(Compare),
     /// Compare the root finders of implicit surfaces over rays whose first hits are known.
     Finders(Finders),
 }
@@ -270,6 +274,38 @@ impl Replay {
         let image = [("seed", self.seed.clone())];
         self.scene.overrides(self.panel.as_deref(), &image)
     }
+}
+
+/// Arguments of `etalon compare`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+B is the reference: its mean is what relative errors are relative to. Where both pictures know the \
+variances of their pixels, a verdict follows: image means, blocks of pixels and the distribution of \
+all blocks are tested at a family-wise level of 1e-3, and the smallest bias that would have been \
+caught is printed.
+
+Exit codes: 0 consistent, 1 not, 2 could not compare (other size, other scene, no common channel, \
+values that are not numbers, no variances).
+
+Examples:
+  etalon compare picture.exr reference/cornell_box.exr --heatmap difference.png
+  etalon compare furnace.exr --truth 2 --json")]
+pub struct Compare {
+    /// The picture.
+    #[arg(value_name = "A.exr")]
+    pub a: PathBuf,
+    /// The picture it is compared with.
+    #[arg(value_name = "B.exr", required_unless_present = "truth")]
+    pub b: Option<PathBuf>,
+    /// Compare the mean of each channel with this number instead.
+    #[arg(long, value_name = "VALUE", conflicts_with = "b", allow_negative_numbers = true, value_parser = finite)]
+    pub truth: Option<f64>,
+    /// Print everything as JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Paint where they differ: red where A is too bright, blue where it is too dark.
+    #[arg(long, value_name = "OUT.png", conflicts_with = "truth")]
+    pub heatmap: Option<PathBuf>,
 }
 
 /// Arguments of `etalon finders`.

@@ -1,6 +1,7 @@
 //! Commands: one file each, their arguments in [`args`].
 
 mod args;
+mod compare;
 mod error;
 mod finders;
 mod info;
@@ -40,6 +41,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Info(info) => info::run(info),
         Command::Trace(trace) => trace::run(trace),
         Command::Replay(replay) => replay::run(replay),
+        Command::Compare(compare) => compare::run(compare),
         Command::Finders(finders) => finders::run(finders),
     };
     match answer {

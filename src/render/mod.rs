@@ -5,6 +5,7 @@ pub mod dispatch;
 pub mod pass;
 pub mod replay;
 pub mod session;
+pub mod target;
 pub mod tile;
 
 pub use crate::math::instructions::Instructions;

@@ -1,4 +1,6 @@
-//! Comparisons that are worth a chart.
+//! Comparisons: of pictures with pictures and with truths, and of methods with each other.
 
+pub mod agreement;
+pub mod compare;
 pub mod failures;
 pub mod finders;
