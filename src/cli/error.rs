@@ -26,7 +26,7 @@ pub enum CommandError {
         /// The object.
         name: String,
     },
-    /// A file of the comparison of finders cannot be read.
+    /// A table cannot be read.
     #[error("error: cannot read {}: {reason}", path.display())]
     Table {
         /// The file.
@@ -117,6 +117,9 @@ pub enum CommandError {
     /// The result could not be written.
     #[error("error: cannot write the output: {0}")]
     Output(io::Error),
+    /// A study cannot be carried out or shown.
+    #[error("error: {}", .0.trim_start_matches("error: "))]
+    Study(String),
     /// An argument that does not fit the scene.
     #[error("error: {0}")]
     Arguments(String),

@@ -79,6 +79,11 @@ impl Pixels {
         rejected
     }
 
+    /// Replicates that `samples` samples reach.
+    pub fn replicates(&self, samples: u32) -> u32 {
+        self.replicates.count(samples)
+    }
+
     /// Mean of a pixel's samples in each of its replicates, after `samples` samples in all.
     pub fn replicate_means(
         &self,

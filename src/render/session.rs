@@ -188,6 +188,12 @@ impl Rendered {
         image
     }
 
+    /// Replicates that every pixel has.
+    pub fn replicates(&self) -> u32 {
+        let tile = self.tiles.first();
+        tile.map_or(0, |tile| tile.pixels.replicates(self.samples))
+    }
+
     fn estimates(&self, channels: impl Fn([f64; 3]) -> [f64; 3] + Copy) -> Vec<Estimate> {
         let empty = Estimate {
             mean: [0.0; 3],
