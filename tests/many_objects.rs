@@ -175,7 +175,11 @@ fn answers<L: Lanes>(l: L, model: &Model<L::Scalar>, rays: &[[DVec3; 2]]) -> Vec
         for (answers, inward) in answers.iter_mut().zip([0, 0x5555_5555]) {
             let found = ask(l, model, &rays, &leaving, inward);
             for (i, (t, part, _)) in found.iter().enumerate() {
-                leaving[i] = model.parts.object(*part).unwrap_or(NOTHING);
+                leaving[i] = model
+                    .parts
+                    .entries
+                    .get(*part as usize)
+                    .map_or(NOTHING, |part| part.object);
                 if t.is_finite() {
                     let [from, direction] = rays[i];
                     rays[i] = [from + *t * direction, turned(direction)];

@@ -15,6 +15,7 @@ mod lanes_support;
 mod lights;
 mod many_objects;
 mod metrics;
+mod occluders;
 mod oracle_primitives;
 mod sampling;
 mod scene_file;

@@ -13,8 +13,7 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 
 use etalon::film::{exr, png, whole};
-use etalon::render::Instructions;
-use etalon::render::{Request, dispatch, render, render_binned};
+use etalon::render::{Instructions, Request, render, render_binned};
 use etalon::scene;
 use rayon::ThreadPool;
 
@@ -79,8 +78,10 @@ pub fn threads(count: Option<NonZeroUsize>) -> Result<ThreadPool, CommandError> 
 
 /// The instruction set asked for, if this machine has it.
 pub fn instructions(asked: values::Instructions) -> Result<Instructions, CommandError> {
-    let name = asked.name();
-    dispatch::instructions(name).ok_or(CommandError::Instructions(name.unwrap_or("known")))
+    let Some(name) = asked.name() else {
+        return Ok(Instructions::best());
+    };
+    Instructions::named(name).ok_or(CommandError::Instructions(name))
 }
 
 /// Renders and writes one picture, on the threads of the current pool; the answer is the report,

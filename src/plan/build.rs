@@ -323,8 +323,9 @@ impl<T: Scalar> Builder<T> {
                 sum += 0.5 / count + 0.5 * power / total;
                 let end = if i == last { 1.0 } else { sum };
                 light.below = below;
-                // The probability is what the comparison with the *rounded* bounds realises.
-                let next = T::from_f64(end);
+                // Uniform numbers are multiples of the step in either precision: among such bounds
+                // the probability is exactly their distance.
+                let next = T::from_f64((end / PROBABILITY_STEP).round() * PROBABILITY_STEP);
                 light.probability = T::from_f64(next.to_f64() - below.to_f64());
                 below = next;
                 light
@@ -332,6 +333,9 @@ impl<T: Scalar> Builder<T> {
             .collect()
     }
 }
+
+/// Step of the probabilities of lights: that of uniform numbers in single precision, 2⁻²⁴.
+const PROBABILITY_STEP: f64 = 1.0 / (1 << 24) as f64;
 
 /// Whether front and back emit.
 fn sides(sides: Sides) -> [bool; 2] {

@@ -10,6 +10,6 @@ pub mod replay;
 pub mod session;
 pub mod tile;
 
-pub use dispatch::{Instructions, instructions};
+pub use crate::math::instructions::Instructions;
 pub use replay::replay;
 pub use session::{Progress, Rendered, Request, render, render_binned};

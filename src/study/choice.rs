@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use super::StudyError;
 use super::axis::Key;
-use super::reference::{self, Reference};
+use super::reference::{self, Reference, ReferenceError};
 use super::run::Request;
 use super::subject::{Ready, Subject};
 use crate::scene::{SamplerKind, Scene};
@@ -104,7 +104,7 @@ pub fn find(request: &Request, scene: &Scene) -> Result<Found, StudyError> {
 fn automatic(request: &Request, subject: reference::Subject<'_>) -> Found {
     let scene = subject.scene;
     let mut notes = Vec::new();
-    for path in committed(&request.subject.path, scene.panel.as_deref()) {
+    for path in committed(&request.subject.path) {
         match Reference::read(&path, subject) {
             Ok(reference) => {
                 return Found {
@@ -113,6 +113,8 @@ fn automatic(request: &Request, subject: reference::Subject<'_>) -> Found {
                     notes,
                 };
             }
+            // Of another panel: not meant for this study.
+            Err(ReferenceError::Variant { .. }) => {}
             Err(reason) => notes.push(format!("not used as reference: {reason}")),
         }
     }
@@ -131,24 +133,26 @@ fn automatic(request: &Request, subject: reference::Subject<'_>) -> Found {
     }
 }
 
-/// Where committed references of a scene may lie: `reference/NAME-PANEL.exr` and
-/// `reference/NAME.exr`, beside the directory of the scene and in the current one; those that are
-/// there.
-fn committed(scene: &Path, panel: Option<&str>) -> Vec<PathBuf> {
+/// Where committed references of a scene may lie: pictures whose name begins with the scene's in
+/// a directory `reference`, beside the scene's directory or in the current one.
+fn committed(scene: &Path) -> Vec<PathBuf> {
     let name = stem(scene);
     let beside = scene.parent().map(|directory| directory.join(".."));
-    let names = panel.map(|panel| format!("{name}-{panel}.exr"));
-    let names: Vec<String> = names.into_iter().chain([format!("{name}.exr")]).collect();
     let mut paths: Vec<PathBuf> = Vec::new();
     for root in [Some(PathBuf::new()), beside].into_iter().flatten() {
-        for name in &names {
-            let path = root.join("reference").join(name);
+        let entries = std::fs::read_dir(root.join("reference"));
+        let found = entries.into_iter().flatten().flatten().map(|e| e.path());
+        let fits = |path: &PathBuf| {
+            stem(path).starts_with(&name) && path.extension().is_some_and(|e| e == "exr")
+        };
+        for path in found.filter(fits) {
             let same = |other: &PathBuf| other.canonicalize().ok() == path.canonicalize().ok();
-            if path.is_file() && !paths.iter().any(same) {
+            if !paths.iter().any(same) {
                 paths.push(path);
             }
         }
     }
+    paths.sort();
     paths
 }
 

@@ -100,8 +100,9 @@ pub enum ReferenceError {
     },
 }
 
-/// Keys that choose the estimator, not what is estimated.
-const OF_THE_ESTIMATOR: [&str; 6] = [
+/// Keys that choose the estimator, not what is estimated; and the size, which is compared itself.
+const OF_THE_ESTIMATOR: [&str; 7] = [
+    "image.size",
     "image.spp",
     "image.sampler",
     "image.seed",
@@ -278,11 +279,12 @@ fn check_subject(
     }
 }
 
-/// `key=value` pairs out of an attribute, one a line or between semicolons.
+/// `key=value` pairs out of an attribute: words without spaces of their own.
 fn pairs(text: &str) -> Vec<(String, String)> {
-    let lines = text.split(['\n', ';']).filter_map(|line| line.split_once('='));
-    lines
-        .map(|(key, value)| (key.trim().to_owned(), value.trim().to_owned()))
+    let words = text.split_whitespace();
+    words
+        .filter_map(|word| word.split_once('='))
+        .map(|(key, value)| (key.to_owned(), value.to_owned()))
         .collect()
 }
 

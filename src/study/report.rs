@@ -165,7 +165,7 @@ fn settings(request: &Request, study: &Study) -> String {
         ("renders of each point", request.replicates.to_string()),
         ("reference", study.about_reference.clone()),
         ("threads", threads.to_string()),
-        ("instruction set", format!("{:?}", request.subject.instructions)),
+        ("instruction set", request.subject.instructions.name().to_owned()),
         ("etalon", env!("CARGO_PKG_VERSION").to_owned()),
         (
             "time of the last run",

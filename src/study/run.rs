@@ -249,9 +249,9 @@ impl Work {
             directory: request.directory.clone(),
             replicates: request.replicates,
             set: set
-                .map(|(key, value)| format!("{key}={value}"))
+                .map(|(key, value)| format!("{key}={}", value.replace(' ', "")))
                 .collect::<Vec<_>>()
-                .join("\n"),
+                .join(" "),
             ready,
         })
     }
@@ -426,7 +426,7 @@ impl Work {
             renderer: "etalon".to_owned(),
             scene: choice::stem(&request.subject.path),
             panel: ready.scene.panel.clone().unwrap_or_default(),
-            settings: self.set.replace('\n', " "),
+            settings: self.set.clone(),
             values: ready.values(point),
             replicate,
             seed: ready.seed(replicate),

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use etalon::plan::Plan;
-use etalon::render::instructions;
+use etalon::render::Instructions;
 use etalon::render::session::{Progress, Rendered, Request, render as run};
 use etalon::render::tile::Window;
 use etalon::scene::{Overrides, parse};
@@ -155,7 +155,7 @@ pub fn render(text: &Text, spp: u32, seed: u64, window: Option<Window>) -> Rende
         window: window.unwrap_or(whole),
         samples: spp,
         time: None,
-        instructions: instructions(None).unwrap(),
+        instructions: Instructions::best(),
     };
     let rendered = run(&plan, &request, &mut Silent);
     assert_eq!(rendered.not_a_number, 0, "{file}");

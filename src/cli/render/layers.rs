@@ -6,6 +6,7 @@
 use std::sync::Arc;
 
 use etalon::camera::centre_ray;
+use etalon::film::pixels::Estimate;
 use etalon::film::spectral::Bin;
 use etalon::film::{Channel, Picture, names};
 use etalon::render::Rendered;
@@ -95,12 +96,22 @@ fn push_spectral(picture: &mut Picture, job: &Job, rendered: &Rendered) {
     let Some(grid) = &job.bins else {
         return;
     };
+    let replicates = job.plan.choices.replicates.count(rendered.samples);
     let bin = |(index, &nm): (usize, &f64)| {
-        let values = rendered.bin(index)?;
+        let estimates = rendered.bin(index)?;
+        let single = |value: fn(&Estimate<1>) -> f64| {
+            let values = estimates.iter().map(|e| value(e) as f32);
+            values.collect::<Vec<_>>()
+        };
         Some(Bin {
             nm,
             sensitivity: Vec::new(),
-            values: values.into_iter().map(|v| v as f32).collect(),
+            values: single(|e| e.mean[0]),
+            standard_errors: if replicates > 1 {
+                single(|e| e.standard_error[0])
+            } else {
+                Vec::new()
+            },
         })
     };
     let bins = grid.centres().iter().enumerate().filter_map(bin).collect();

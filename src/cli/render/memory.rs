@@ -1,6 +1,7 @@
 //! Whether a picture fits into memory, before it is begun.
 
 use etalon::film::pixels::{Estimate, Pixels};
+use etalon::render::bins::Bins;
 use etalon::render::memory::available;
 
 use super::super::args::Render;
@@ -15,9 +16,10 @@ const CHANNELS: usize = 7;
 /// file, of which the writer makes a copy.
 fn bytes_per_pixel(arguments: &Render, job: &Job) -> usize {
     let bins = job.bins.as_ref().map_or(0, |grid| grid.centres().len());
-    let pixel = Pixels::bytes_per_pixel(job.plan.choices.replicates, job.scene.image.spp);
-    let sums = pixel + bins * size_of::<f64>();
-    let channels = CHANNELS + layers::channel_count(&arguments.layers) + bins;
+    let (replicates, samples) = (job.plan.choices.replicates, job.scene.image.spp);
+    let pixel = Pixels::bytes_per_pixel(replicates, samples);
+    let sums = pixel + bins * Bins::bytes_per_pixel(replicates, samples);
+    let channels = CHANNELS + layers::channel_count(&arguments.layers) + 2 * bins;
     sums + size_of::<Estimate>() + 2 * channels * size_of::<f32>()
 }
 
