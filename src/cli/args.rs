@@ -9,7 +9,9 @@ use etalon::study::axis::Axis;
 use etalon::study::charts::USUAL_ERROR;
 use etalon::study::choice::Choice;
 
-use super::values::{Crop, Instructions, Layer, Panels, Pixel, PlanChoice, Seconds, Size, GoalTarget, setting, share};
+use super::values::{
+    Crop, GoalTarget, Instructions, Layer, Panels, Pixel, PlanChoice, Seconds, Size, setting, share,
+};
 
 /// A physically based spectral renderer, and the instrument that proves its pictures right.
 #[derive(Debug, Parser)]
@@ -114,7 +116,12 @@ pub struct Render {
     pub target_error: Option<f64>,
     /// What --target-error is the error of: the mean luminance of the whole image, or of its worst
     /// block of 8x8 pixels.
-    #[arg(long, value_name = "image|block", requires = "target_error", default_value = "image")]
+    #[arg(
+        long,
+        value_name = "image|block",
+        requires = "target_error",
+        default_value = "image"
+    )]
     pub target: GoalTarget,
     /// Render this part of the picture only: pixels from X0,Y0 up to but not including X1,Y1.
     #[arg(long, value_name = "X0,Y0,X1,Y1")]
@@ -418,7 +425,12 @@ pub struct Coverage {
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
     /// Samplers to be tested.
-    #[arg(long, value_name = "S,…", value_delimiter = ',', default_value = "independent,stratified,sobol")]
+    #[arg(
+        long,
+        value_name = "S,…",
+        value_delimiter = ',',
+        default_value = "independent,stratified,sobol"
+    )]
     pub samplers: Vec<String>,
     /// Camera paths per pixel of a tested render, at least 2.
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..))]

@@ -25,13 +25,18 @@ pub fn run(arguments: &args::Chart) -> Result<Answer, CommandError> {
         }
         rows.extend(own);
     }
-    let scenes: Vec<(&str, &str)> = rows.iter().map(|r| (r.scene.as_str(), r.panel.as_str())).collect();
+    let scenes: Vec<(&str, &str)> = rows
+        .iter()
+        .map(|r| (r.scene.as_str(), r.panel.as_str()))
+        .collect();
     if scenes.iter().any(|scene| *scene != scenes[0]) {
         tell("note: the tables are of different scenes or panels");
     }
     let curves = curves(&rows, Key::Spp);
     let figure = charts::error_over_seconds(&curves, arguments.at);
-    let svg = figure.svg().map_err(|e| CommandError::Study(e.to_string()))?;
+    let svg = figure
+        .svg()
+        .map_err(|e| CommandError::Study(e.to_string()))?;
     write_chart(&arguments.output, &svg)?;
     let mut lines = vec![format!(
         "{}, {}: {} curves of {} renders",

@@ -5,15 +5,15 @@ use std::path::Path;
 
 use etalon::scene::{self, Overrides};
 use etalon::study::choice::stem;
-use etalon::study::coverage::{Coverage, Count, SURVEY, Survey, cover};
+use etalon::study::coverage::{Count, Coverage, SURVEY, Survey, cover};
 use etalon::study::subject::Subject;
 
+use super::Answer;
 use super::args;
 use super::error::CommandError;
 use super::render::{instructions, say, threads};
 use super::study::write;
 use super::values::Instructions;
-use super::Answer;
 
 /// How many times as many samples the survey takes as a tested render: what it has not seen
 /// contributes to a tested render with a probability of a sixteenth at most, on average.
@@ -56,11 +56,9 @@ pub fn run(arguments: &args::Coverage) -> Result<Answer, CommandError> {
 }
 
 /// One scene with each sampler.
-fn test(
-    arguments: &args::Coverage,
-    path: &Path,
-) -> Result<Vec<(String, Coverage)>, CommandError> {
-    let failed = |error: etalon::study::subject::SubjectError| CommandError::Study(error.to_string());
+fn test(arguments: &args::Coverage, path: &Path) -> Result<Vec<(String, Coverage)>, CommandError> {
+    let failed =
+        |error: etalon::study::subject::SubjectError| CommandError::Study(error.to_string());
     let mut overrides = Overrides {
         set: arguments.set.clone(),
         ..Overrides::default()
@@ -81,7 +79,9 @@ fn test(
     let with = |name: &str, settings: &[(&str, String)]| {
         let mut overrides = subject.overrides.clone();
         let settings = settings.iter();
-        overrides.set.extend(settings.map(|(key, value)| (format!("image.{key}"), value.clone())));
+        overrides
+            .set
+            .extend(settings.map(|(key, value)| (format!("image.{key}"), value.clone())));
         subject.ready(&overrides, name.to_owned()).map_err(failed)
     };
     let survey = [

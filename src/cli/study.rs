@@ -86,7 +86,10 @@ fn publish(request: &Request, study: &Study) -> Result<(), CommandError> {
     }
     let figures = [
         ("error", charts::error_over_abscissa(&curves, abscissa)),
-        ("speed", charts::error_over_seconds(&curves, charts::USUAL_ERROR)),
+        (
+            "speed",
+            charts::error_over_seconds(&curves, charts::USUAL_ERROR),
+        ),
         ("honesty", charts::estimated_over_actual(&curves, abscissa)),
     ];
     let mut drawn = Vec::new();

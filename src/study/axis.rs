@@ -75,13 +75,17 @@ pub struct Axis {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum AxisError {
     /// No `=`.
-    #[error("\"{0}\" is no axis: expected KEY=VALUES, such as spp=1..4096x2 or sampler=sobol,independent")]
+    #[error(
+        "\"{0}\" is no axis: expected KEY=VALUES, such as spp=1..4096x2 or sampler=sobol,independent"
+    )]
     Form(String),
     /// A key that a study cannot go over.
     #[error("a study cannot go over \"{0}\": it can go over {known}; anything else is set with --set", known = known())]
     Key(String),
     /// The values of a range are not whole numbers, or it has no end.
-    #[error("\"{0}\" is no range: expected FROM..TOxFACTOR with whole numbers 1 ≤ FROM ≤ TO and a factor above 1, such as 1..64x2")]
+    #[error(
+        "\"{0}\" is no range: expected FROM..TOxFACTOR with whole numbers 1 ≤ FROM ≤ TO and a factor above 1, such as 1..64x2"
+    )]
     Range(String),
     /// No values.
     #[error("the axis {0} has no values")]

@@ -250,8 +250,14 @@ fn faster(curves: &[Curve], at: f64) -> Vec<String> {
         return Vec::new();
     }
     // Fronts fall: their first error is their largest.
-    let largest = programs.iter().map(|(_, f)| f[0].0).fold(f64::INFINITY, f64::min);
-    let smallest = programs.iter().map(|(_, f)| f[f.len() - 1].0).fold(0.0, f64::max);
+    let largest = programs
+        .iter()
+        .map(|(_, f)| f[0].0)
+        .fold(f64::INFINITY, f64::min);
+    let smallest = programs
+        .iter()
+        .map(|(_, f)| f[f.len() - 1].0)
+        .fold(0.0, f64::max);
     if smallest > largest {
         return vec!["The programs reach no error in common.".to_owned()];
     }

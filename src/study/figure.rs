@@ -104,9 +104,9 @@ impl Figure {
     /// # Errors
     /// [`FigureError`] where there is nothing above zero to draw, or drawing fails.
     pub fn svg(&self) -> Result<String, FigureError> {
-        let ranges = self.ranges().ok_or_else(|| {
-            failed("no point has an abscissa and an ordinate above zero")
-        })?;
+        let ranges = self
+            .ranges()
+            .ok_or_else(|| failed("no point has an abscissa and an ordinate above zero"))?;
         let lines = self.series.len() + self.notes.len() + usize::from(self.front.is_some());
         let height = PLOT + LINE * lines as u32 + 12;
         let mut text = String::new();
@@ -123,7 +123,10 @@ impl Figure {
 
     /// Whole decades around everything that has points.
     fn ranges(&self) -> Option<[(f64, f64); 2]> {
-        let marks = self.series.iter().flat_map(|s| s.points.iter().chain(&s.floor));
+        let marks = self
+            .series
+            .iter()
+            .flat_map(|s| s.points.iter().chain(&s.floor));
         let all: Vec<(f64, f64)> = marks.map(|m| (m.x, m.y)).filter(|p| drawable(*p)).collect();
         let x = limits(all.iter().map(|p| p.0), 1.25)?;
         let y = limits(all.iter().map(|p| p.1), 1.6)?;
@@ -331,4 +334,3 @@ fn limits(numbers: impl Iterator<Item = f64>, margin: f64) -> Option<(f64, f64)>
     });
     bounds.map(|(low, high)| (low / margin, high * margin))
 }
-

@@ -112,10 +112,7 @@ pub fn write(
         let attribute = (name.to_owned(), Attribute::Text(value));
         picture.attributes.push(attribute);
     }
-    let counts = [
-        ("replicates", own.count()),
-        ("spp", ready.scene.image.spp),
-    ];
+    let counts = [("replicates", own.count()), ("spp", ready.scene.image.spp)];
     for (name, value) in counts {
         let value = Attribute::whole_number(value.into());
         picture.attributes.push((name.to_owned(), value));

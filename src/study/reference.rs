@@ -167,8 +167,8 @@ impl Reference {
                 wanted,
             });
         }
-        let channels = planes(picture, names::BEAUTY)
-            .ok_or_else(|| ReferenceError::NoColour(path.clone()))?;
+        let channels =
+            planes(picture, names::BEAUTY).ok_or_else(|| ReferenceError::NoColour(path.clone()))?;
         let variances =
             planes(picture, VARIANCE).ok_or_else(|| ReferenceError::NoVariance(path.clone()))?;
         let named = |layer: &'static str| {

@@ -28,7 +28,10 @@ pub fn html(request: &Request, study: &Study, curves: &[Curve], charts: &[String
         .map(|svg| format!("<div class=\"chart\">\n{svg}\n</div>\n"))
         .collect();
     let parts = [
-        ("{{title}}", escaped(&format!("{name}{panel}: error over samples and seconds"))),
+        (
+            "{{title}}",
+            escaped(&format!("{name}{panel}: error over samples and seconds")),
+        ),
         ("{{summary}}", summary(study, curves)),
         ("{{charts}}", charts),
         ("{{about_pictures}}", escaped(&pictures.about)),
@@ -114,7 +117,9 @@ fn table(curves: &[Curve], abscissa: &str) -> String {
         "",
     ];
     let cells = |tag: &str, cells: &[String]| -> String {
-        let cells = cells.iter().map(|c| format!("<{tag}>{}</{tag}>", escaped(c)));
+        let cells = cells
+            .iter()
+            .map(|c| format!("<{tag}>{}</{tag}>", escaped(c)));
         format!("<tr>{}</tr>\n", cells.collect::<String>())
     };
     let mut text = format!("<table>\n{}", cells("th", &heads.map(str::to_owned)));
@@ -135,7 +140,11 @@ fn numbers(curve: &Curve, point: &Point) -> [String; 9] {
         }
     };
     let ratio = point.estimated_over_actual();
-    let floor = if point.at_floor() { "reference's floor" } else { "" };
+    let floor = if point.at_floor() {
+        "reference's floor"
+    } else {
+        ""
+    };
     [
         curve.label.clone(),
         Figure::number(point.x),
@@ -144,7 +153,11 @@ fn numbers(curve: &Curve, point: &Point) -> [String; 9] {
         with(point.mean(|row| row.relmse)),
         with(point.rmse()),
         with(point.mean(|row| row.bias)),
-        if ratio.is_nan() { String::new() } else { format!("{ratio:.3}") },
+        if ratio.is_nan() {
+            String::new()
+        } else {
+            format!("{ratio:.3}")
+        },
         floor.to_owned(),
     ]
 }
@@ -152,7 +165,11 @@ fn numbers(curve: &Curve, point: &Point) -> [String; 9] {
 /// Everything that was asked for and chosen.
 fn settings(request: &Request, study: &Study) -> String {
     let overrides = &request.subject.overrides;
-    let set: Vec<String> = overrides.set.iter().map(|(k, v)| format!("{k}={v}")).collect();
+    let set: Vec<String> = overrides
+        .set
+        .iter()
+        .map(|(k, v)| format!("{k}={v}"))
+        .collect();
     let [seconds, rendering] = study.seconds;
     let curves: Vec<String> = study.grid.others.iter().map(ToString::to_string).collect();
     let threads = study.rows.first().map_or(0, |row: &Row| row.threads);
@@ -165,7 +182,10 @@ fn settings(request: &Request, study: &Study) -> String {
         ("renders of each point", request.replicates.to_string()),
         ("reference", study.about_reference.clone()),
         ("threads", threads.to_string()),
-        ("instruction set", request.subject.instructions.name().to_owned()),
+        (
+            "instruction set",
+            request.subject.instructions.name().to_owned(),
+        ),
         ("etalon", env!("CARGO_PKG_VERSION").to_owned()),
         (
             "time of the last run",
@@ -176,7 +196,8 @@ fn settings(request: &Request, study: &Study) -> String {
         ),
     ];
     let said = pairs.iter().filter(|(_, value)| !value.is_empty());
-    let rows = said.map(|(name, value)| format!("<tr><td>{name}</td><td>{}</td></tr>\n", escaped(value)));
+    let rows =
+        said.map(|(name, value)| format!("<tr><td>{name}</td><td>{}</td></tr>\n", escaped(value)));
     format!("<table>\n{}</table>", rows.collect::<String>())
 }
 
@@ -205,7 +226,11 @@ impl Pictures {
                 continue;
             }
             let difference = differences(&rgb, reference, scale);
-            data.push(entry(&format!("difference-{i}"), &difference, reference.size));
+            data.push(entry(
+                &format!("difference-{i}"),
+                &difference,
+                reference.size,
+            ));
             pairs.push_str(&pair(i, curve));
             entries.push((format!("curve-{i}"), rgb));
         }

@@ -72,7 +72,7 @@ const SAMPLERS: [&str; 3] = ["independent", "stratified", "sobol"];
 /// Share of the budget that the pilot takes, and the most and the least that it takes of a point,
 /// seconds.
 const PILOT_SHARE: f64 = 0.05;
-const PILOT: [f64; 2] = [0.02, 0.5];
+const PILOT: [f64; 2] = [0.02, 0.2];
 
 /// Carries a study out, or goes on with it.
 ///
@@ -83,7 +83,11 @@ pub fn run(request: &Request, watch: &mut dyn Watch) -> Result<Study, StudyError
     if request.replicates < 2 {
         return Err(StudyError::OneReplicate);
     }
-    let base = request.subject.ready(&request.subject.overrides, String::new())?;
+    let base = request
+        .subject
+        .ready(&request.subject.overrides, String::new())?;
+    // Before there is a reference as large as the picture.
+    budget::check_memory(&base, memory::available())?;
     let directory = |source| StudyError::Directory {
         path: request.directory.clone(),
         source,
@@ -153,7 +157,10 @@ fn axes(request: &Request, base: &Ready) -> Result<Vec<Axis>, StudyError> {
     let samplers = axes.iter().find(|axis| axis.key == Key::Sampler);
     let centres = samplers.map_or([centre, !centre], |axis| {
         let is_centre = |value: &String| value == "center";
-        [axis.values.iter().any(is_centre), !axis.values.iter().all(is_centre)]
+        [
+            axis.values.iter().any(is_centre),
+            !axis.values.iter().all(is_centre),
+        ]
     });
     if centres == [true, true] {
         return Err(StudyError::TwoPictures);
@@ -396,7 +403,12 @@ impl Work {
                     continue;
                 }
                 let ready = &mut self.ready[i];
-                let what = format!("{}, render {} of {}", ready.name, replicate + 1, self.replicates);
+                let what = format!(
+                    "{}, render {} of {}",
+                    ready.name,
+                    replicate + 1,
+                    self.replicates
+                );
                 clock.expect(seconds_of(cost.points[i], self.samples[i]));
                 let rendered = clock.time(&what, |watched| ready.render(replicate, watched));
                 if rendered.samples < self.samples[i] {
@@ -498,7 +510,11 @@ impl<'a> Clock<'a> {
         let result = work(&mut Part { clock: self, what });
         let taken = start.elapsed().as_secs_f64();
         self.rendering += taken;
-        self.done[0] += if self.done[1] > 0.0 { self.done[1] } else { taken };
+        self.done[0] += if self.done[1] > 0.0 {
+            self.done[1]
+        } else {
+            taken
+        };
         self.done[1] = 0.0;
         result
     }
@@ -525,7 +541,8 @@ struct Part<'a, 'b> {
 
 impl Progress for Part<'_, '_> {
     fn passed(&mut self, done: u32, wanted: u32, _: Duration, _: Option<f64>) -> bool {
-        self.clock.tell(self.what, f64::from(done) / f64::from(wanted));
+        self.clock
+            .tell(self.what, f64::from(done) / f64::from(wanted));
         !self.clock.watch.stops()
     }
 }

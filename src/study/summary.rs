@@ -38,7 +38,12 @@ pub struct Mean {
 impl Point {
     /// The mean of a column.
     pub fn mean(&self, column: impl Fn(&Row) -> f64) -> Mean {
-        let values: Vec<f64> = self.rows.iter().map(column).filter(|v| !v.is_nan()).collect();
+        let values: Vec<f64> = self
+            .rows
+            .iter()
+            .map(column)
+            .filter(|v| !v.is_nan())
+            .collect();
         let count = values.len() as f64;
         let value = mean(&values);
         let squares: f64 = values.iter().map(|v| (v - value) * (v - value)).sum();
@@ -70,7 +75,9 @@ impl Point {
 
     /// Mean estimated over mean actual squared error, its root.
     pub fn estimated_over_actual(&self) -> f64 {
-        let estimated = self.mean(|row| row.estimated_rmse * row.estimated_rmse).value;
+        let estimated = self
+            .mean(|row| row.estimated_rmse * row.estimated_rmse)
+            .value;
         (estimated / self.mean(Row::mse).value).sqrt()
     }
 }
