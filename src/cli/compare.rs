@@ -84,7 +84,7 @@ pub fn run(arguments: &Compare) -> Result<Answer, CommandError> {
 fn with_picture(arguments: &Compare, a: &Side, b: &Side) -> Result<Report, CommandError> {
     let (channels, rgb) = metrics(a, b)?;
     let mut notes = Vec::new();
-    let stale = [a, b].map(|side| stale(side));
+    let stale = [a, b].map(stale);
     if let Some(difference) = different_scenes(a, b) {
         let because: Vec<String> = stale.into_iter().flatten().collect();
         return Err(CommandError::Scenes(difference, because.join("; ")));
