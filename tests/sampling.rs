@@ -38,7 +38,7 @@ fn level() -> f64 {
 
 /// Which numbers to ask for.
 #[derive(Debug, Clone, Copy)]
-enum What {
+pub enum What {
     Camera,
     Pair(Slot, u32),
     Single(Slot, u32),
@@ -121,12 +121,12 @@ const WHATS: [What; 5] = [
     What::Single(Slot::Roulette, 6),
 ];
 
-fn sequence(kind: SamplerKind, seed: u64, spp: u32) -> Sequence {
+pub fn sequence(kind: SamplerKind, seed: u64, spp: u32) -> Sequence {
     Sequence::new(kind, seed, spp, Replicates::Fixed(1))
 }
 
 /// All samples 0 … n − 1 of `pixels` pixels, pixel by pixel.
-fn pixels_of(
+pub fn pixels_of(
     precision: Precision,
     sequence: Sequence,
     what: What,

@@ -25,7 +25,7 @@ pub enum CommandError {
     /// An object's matrix has no inverse.
     #[error("error: {0}")]
     Singular(#[from] Singular),
-    /// A file of the comparison of finders cannot be read.
+    /// A table cannot be read.
     #[error("error: cannot read {}: {reason}", path.display())]
     Table {
         /// The file.
@@ -125,6 +125,9 @@ pub enum CommandError {
     /// The result could not be written.
     #[error("error: cannot write the output: {0}")]
     Output(io::Error),
+    /// A study cannot be carried out or shown.
+    #[error("error: {}", .0.trim_start_matches("error: "))]
+    Study(String),
     /// An argument that does not fit the scene.
     #[error("error: {0}")]
     Arguments(String),

@@ -1,7 +1,10 @@
 //! A render: tiles over threads, passes over the whole image, and when to stop.
 
 pub mod bins;
+pub mod blocks;
 pub mod dispatch;
+pub mod goal;
+pub mod memory;
 pub mod pass;
 pub mod replay;
 pub mod session;

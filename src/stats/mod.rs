@@ -8,6 +8,7 @@
 pub mod estimate;
 pub mod family;
 pub mod metrics;
+pub mod slope;
 pub mod student;
 pub mod uniformity;
 pub mod verdict;
