@@ -33,6 +33,32 @@ const MOST: u64 = 24_000_000;
 /// millionths.
 const KNOWN: [(&str, &str); 1] = [("cornell_box", "S0.705,000000nm")];
 
+/// Rows of pixels that are not judged: Mitsuba has no infinite plane, and the square that stands for
+/// it ends 1000 camera distances away, 0.03 pixels below the horizon, which a lens blurs over several
+/// rows. The row is up to 3 % too bright there.
+const HORIZON: [(&str, std::ops::Range<usize>); 6] = [
+    ("fig7_mirrors_depth_2", 28..29),
+    ("fig7_mirrors_depth_8", 28..29),
+    ("fig7_mirrors_depth_64", 28..29),
+    ("fig8_lens_0.1_20", 0..4),
+    ("fig8_lens_0.8_20", 0..8),
+    ("fig8_lens_0.8_10", 0..8),
+];
+
+/// The picture with black and exact pixels where it is not judged.
+fn judged(name: &str, mut side: Side) -> Side {
+    for (_, rows) in HORIZON.iter().filter(|(known, _)| *known == name) {
+        let pixels = rows.start * side.width..rows.end * side.width;
+        for channel in &mut side.channels {
+            channel.values[pixels.clone()].fill(0.0);
+            if let Some(variances) = &mut channel.variances {
+                variances[pixels.clone()].fill(0.0);
+            }
+        }
+    }
+    side
+}
+
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -81,15 +107,21 @@ fn references_are_of_the_scenes_as_they_are() {
 
 #[test]
 fn every_reference_is_met() {
-    // Levels depend on the number of questions, which the first look says.
-    let count = 60 * references().len();
-    let subjects: Vec<Subject> = references()
+    let cases: Vec<(Case, Side)> = references()
         .iter()
-        .map(|(name, path)| subject(name, path, LEVEL / 2.0 / count as f64))
+        .map(|(name, path)| case(name, path))
+        .collect();
+    // At most: what is black or unknown on one side is not asked.
+    let most: usize = cases
+        .iter()
+        .map(|(case, reference)| reference.channels.len() + 3 * case.regions.len())
+        .sum();
+    let levels = Levels::shared(LEVEL, cases.len(), most);
+    let subjects: Vec<Subject> = cases
+        .into_iter()
+        .map(|(case, reference)| subject(case, reference, levels.question))
         .collect();
     let questions: usize = subjects.iter().map(|s| s.planned.questions.len()).sum();
-    assert!(questions <= count, "{questions} questions");
-    let levels = Levels::shared(LEVEL, subjects.len(), questions);
     let mut wrong = Vec::new();
     let mut open = 0;
     for (index, subject) in subjects.iter().enumerate() {
@@ -113,12 +145,16 @@ fn every_reference_is_met() {
     );
 }
 
-fn subject(name: &str, path: &Path, level: f64) -> Subject {
+fn case(name: &str, path: &Path) -> (Case, Side) {
     let mut reference = Side::read(path).unwrap();
     let known = |channel: &str| KNOWN.contains(&(name, channel));
     reference.channels.retain(|channel| !known(&channel.name));
     let case = Case::of_reference(name, &reference, root()).unwrap_or_else(|e| panic!("{e}"));
-    let pilot = case.render(PILOT, 1 << 32 | seed()).unwrap();
+    (case, judged(name, reference))
+}
+
+fn subject(case: Case, reference: Side, level: f64) -> Subject {
+    let pilot = judged(&case.name, case.render(PILOT, 1 << 32 | seed()).unwrap());
     let planned = plan(&case, (&pilot, PILOT), &reference, MOST, level);
     Subject {
         case,
@@ -134,7 +170,10 @@ fn outcome(subject: &Subject, index: usize, levels: Levels) -> Outcome {
         &subject.planned,
         &subject.reference,
         levels,
-        |spp, round| subject.case.render(spp, seed(round)),
+        |spp, round| {
+            let picture = subject.case.render(spp, seed(round))?;
+            Ok(judged(&subject.case.name, picture))
+        },
     )
     .unwrap_or_else(|e| panic!("{e}"))
 }

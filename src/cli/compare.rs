@@ -5,6 +5,7 @@ mod text;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+use etalon::film::Attribute;
 use etalon::stats::Estimate;
 use etalon::stats::metrics::Metric;
 use etalon::study::compare::stale::{Freshness, different_scenes, freshness};
@@ -55,8 +56,9 @@ enum With {
 /// Compares and says so.
 pub fn run(arguments: &Compare) -> Result<Answer, CommandError> {
     let a = Side::read(&arguments.a)?;
-    let report = match (&arguments.b, arguments.truth) {
-        (Some(b), _) => with_picture(arguments, &a, &Side::read(b)?)?,
+    let b = arguments.b.as_deref().map(Side::read).transpose()?;
+    let report = match (&b, arguments.truth) {
+        (Some(b), _) => with_picture(arguments, &a, b)?,
         (None, Some(truth)) => with_number(&a, truth),
         (None, None) => {
             return Err(CommandError::Arguments(
@@ -77,7 +79,7 @@ pub fn run(arguments: &Compare) -> Result<Answer, CommandError> {
     match &report.judgement {
         Some(judgement) if judgement.consistent => Ok(Answer::Good),
         Some(_) => Ok(Answer::No),
-        None => Err(CommandError::NoVerdict(why_not(&a, &arguments.b))),
+        None => Err(CommandError::NoVerdict(why_not(&a, b.as_ref()))),
     }
 }
 
@@ -94,6 +96,7 @@ fn with_picture(arguments: &Compare, a: &Side, b: &Side) -> Result<Report, Comma
     }
     notes.extend(stale.into_iter().flatten());
     notes.extend(only_one(a, b));
+    notes.extend(other_lengths(a, b));
     let heatmap_scale = match &arguments.heatmap {
         Some(path) => write_heatmap(path, a, b)?,
         None => None,
@@ -171,12 +174,28 @@ fn only_one(a: &Side, b: &Side) -> Vec<String> {
         .collect()
 }
 
+/// Words about paths that may be longer in one picture than in the other.
+fn other_lengths(a: &Side, b: &Side) -> Option<String> {
+    let [own, others] = [a, b].map(|side| match side.attribute("maxDepth")? {
+        Attribute::Int(depth) => Some(depth.to_string()),
+        Attribute::Text(text) => Some(text.clone()),
+        _ => None,
+    });
+    let (own, others) = (own?, others?);
+    (own != others).then(|| {
+        format!(
+            "{} was made with max_depth {own} and {} with {others}",
+            a.path.display(),
+            b.path.display()
+        )
+    })
+}
+
 /// Why there is no verdict.
-fn why_not(a: &Side, b: &Option<PathBuf>) -> String {
-    let unknown = |side: &Side| side.freedom.is_none();
-    let names: Vec<String> = std::iter::once(a.clone())
-        .chain(b.iter().filter_map(|path| Side::read(path).ok()))
-        .filter(unknown)
+fn why_not(a: &Side, b: Option<&Side>) -> String {
+    let names: Vec<String> = std::iter::once(a)
+        .chain(b)
+        .filter(|side| side.freedom.is_none())
         .map(|side| side.path.display().to_string())
         .collect();
     if names.is_empty() {

@@ -20,7 +20,7 @@ pub struct Side {
     pub channels: Vec<Channel>,
     /// Degrees of freedom of each variance; `None` where no variances are known.
     pub freedom: Option<f64>,
-    /// The text attributes and counts that say where the picture comes from.
+    /// The attributes that say where the picture comes from.
     pub attributes: Vec<(String, Attribute)>,
 }
 
@@ -94,11 +94,18 @@ impl Side {
         self.channels.iter().find(|channel| channel.name == name)
     }
 
+    /// An attribute of the file.
+    #[must_use]
+    pub fn attribute(&self, name: &str) -> Option<&Attribute> {
+        let found = self.attributes.iter().find(|(other, _)| other == name);
+        found.map(|(_, value)| value)
+    }
+
     /// A text attribute.
     #[must_use]
     pub fn text(&self, name: &str) -> Option<&str> {
-        match self.attributes.iter().find(|(other, _)| other == name) {
-            Some((_, Attribute::Text(text))) => Some(text),
+        match self.attribute(name)? {
+            Attribute::Text(text) => Some(text),
             _ => None,
         }
     }
