@@ -19,6 +19,7 @@ import json
 import shlex
 import sys
 import time
+import tomllib
 import warnings
 import zlib
 from dataclasses import replace
@@ -220,6 +221,9 @@ def main():
                 make(reference, path, arguments)
         except (SceneError, etalon.EtalonError, OSError) as error:
             print(f"error: {reference.name}: {error}", file=sys.stderr)
+            code = 2
+        except (KeyError, tomllib.TOMLDecodeError) as error:
+            print(f"error: {reference.scene}: {error}; `etalon info` says what is wrong with it", file=sys.stderr)
             code = 2
     return code
 

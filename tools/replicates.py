@@ -16,7 +16,7 @@ import mitsuba_scene
 import spectra
 from reference_file import BANDS
 
-STRATUM = 2.5
+STRATUM = 5.0
 # Width about a wavelength, nm. Its ends are whole multiples of 1/1024 nm, which single precision holds.
 LINE = 1 / 8
 
