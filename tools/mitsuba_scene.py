@@ -9,7 +9,7 @@ that an equal-energy spectrum of value 1 has Y = 1. Results here are multiplied 
 red or green paint; `--film observer` makes it use the published 1 nm table (and its wavelengths).
 
 What is not the same: dispersion (Mitsuba's glass has the index at 550 nm at every wavelength;
-reference.py goes one wavelength at a time), a plane is a square that ends 1000 camera distances away,
+reference.py goes one wavelength at a time), a plane ends a million camera distances away, without the pattern of a checkerboard beyond a thousand,
 and an implicit surface is a fine mesh (implicit_mesh.py). A lens in parallel projection, checkerboards
 on anything but squares and cubes, emitting spheres that are ellipsoids and emitting implicit surfaces have no
 counterpart.
@@ -37,7 +37,11 @@ MITSUBA_VERSION = "3.9.1"
 DEFAULT_VARIANT = "llvm_ad_spectral"
 MITSUBA_Y_INTEGRAL = 106.7502594
 ETALON_Y_INTEGRAL = 106.856914916767
-PLANE_EXTENT = 1000
+# Half sizes, in camera distances, of the squares that stand for a plane: one with the plane's own material,
+# in whose texture coordinates single precision tells the cells of a checkerboard apart, and a ring around it
+# with the mean of the cells, so far out that the horizon is where it belongs.
+PLANE_EXTENT = 1e3
+HORIZON_EXTENT = 1e6
 # Distance between the two copies of a surface that emits on both sides, of its extent: a hundred
 # times the rounding of coordinates in single precision, so that rays tell the copies apart.
 SIDES_GAP = 1e-5
@@ -125,7 +129,7 @@ class Builder:
         camera = self.scene["camera"]
         up = camera.get("up", [0, 1, 0])
         place = mi.ScalarTransform4f().look_at(origin=camera["from"], target=camera["to"], up=up)
-        clip = {"near_clip": float(1e-3 * self.view), "far_clip": float(1e5 * self.view)}
+        clip = {"near_clip": float(1e-3 * self.view), "far_clip": float(10 * HORIZON_EXTENT * self.view)}
         lens = camera.get("lens", {"radius": 0})
         width, height = self.scene["image"]["size"]
         if "orthographic" in camera:
@@ -177,6 +181,12 @@ class Builder:
         to_world = unmirrored(place.to_world)
         if place.kind == "plane":
             to_world = to_world @ np.diag([*plane_scale(to_world, self.view), 1, 1])
+            ring = {"bsdf": self.mean_bsdf(place, material)} | extra
+            far = {
+                f"{key}_far{side}": {"type": "rectangle", "to_world": transform(to_world @ local)} | ring
+                for side, local in enumerate(ring_sides(HORIZON_EXTENT / PLANE_EXTENT))
+            }
+            return far | {key: {"type": "rectangle", "to_world": transform(to_world)} | bsdf | extra}
         if place.kind == "sphere" and not is_similarity(to_world):
             if extra:
                 raise SceneError(f"{place.name}: Mitsuba cannot place an emitting sphere by a general transform")
@@ -225,6 +235,13 @@ class Builder:
             return two_sided({"type": "diffuse", "reflectance": self.checkerboard(place, material)})
         return two_sided({"type": "diffuse", "reflectance": spectrum(0.0)})
 
+    def mean_bsdf(self, place, material):
+        """The scattering of a material; of a checkerboard, the mean of its cells."""
+        if "checkerboard" not in material:
+            return self.bsdf(place, material)
+        cells = [two_sided({"type": "diffuse", "reflectance": self.reflectance(c)}) for c in material["checkerboard"]]
+        return {"type": "blendbsdf", "weight": 0.5, "even": cells[0], "odd": cells[1]}
+
     def conductor(self, mirror):
         """A smooth mirror: a metal of the project's own tables, n and k, or an ideal reflectance."""
         if isinstance(mirror, dict) and "ideal" in mirror:
@@ -264,6 +281,14 @@ def canonical_parts(kind):
     top = scene_file.step({"translate": [0, 0, 1]})
     bottom = scene_file.rotation([1, 0, 0], 180) @ top
     return {"_side": ("cylinder", side), "_top": ("disk", top), "_bottom": ("disk", bottom)}
+
+
+def ring_sides(size):
+    """Placements (4×4) of four rectangles around the canonical one, whose outline is `size` times as large."""
+    middle, half = (size + 1) / 2, (size - 1) / 2
+    for sign in (-1, 1):
+        yield scene_file.step({"translate": [sign * middle, 0, 0]}) @ np.diag([half, size, 1, 1])
+        yield scene_file.step({"translate": [0, sign * middle, 0]}) @ np.diag([1, half, 1, 1])
 
 
 def plane_scale(to_world, view):
