@@ -135,7 +135,7 @@ impl Job for Questions<'_> {
         if self.way == Way::Broken {
             items.truncate(items.len() - items.len() / 8);
         }
-        let many = || Many::new(&items, vec![0], &model.shapes, &model.occluders);
+        let many = || Many::new(&items, vec![0], &model.shapes, &model.occluders.objects);
         model.hierarchy = (self.way != Way::List).then(many);
         let rays = rays(self.rays);
         if self.way == Way::Wide {

@@ -8,6 +8,9 @@
 use std::path::Path;
 use std::time::Duration;
 
+use etalon::integrate::list::List;
+use etalon::integrate::model::Model;
+use etalon::math::lanes::Scalar;
 use etalon::plan::{Plan, Tables};
 use etalon::render::tile::Window;
 use etalon::render::{Instructions, Progress, Request, render};
@@ -60,8 +63,8 @@ fn scene_of(text: &str) -> Scene {
 
 fn occluders(text: &str) -> Vec<u32> {
     match Plan::new(&scene_of(text), false).unwrap().tables {
-        Tables::Single(tables) => tables.0.occluders,
-        Tables::Double(tables) => tables.0.occluders,
+        Tables::Single(tables) => tables.0.occluders.objects,
+        Tables::Double(tables) => tables.0.occluders.objects,
     }
 }
 
@@ -136,9 +139,12 @@ impl Progress for Quiet {
 fn bits(scene: &Scene, hiding: Option<&[u32]>) -> Vec<[u64; 3]> {
     let mut plan = Plan::new(scene, false).unwrap();
     if let Some(hiding) = hiding {
+        fn ask_only<T: Scalar>(model: &mut Model<T>, hiding: &[u32]) {
+            model.occluders = List::new(hiding.to_vec(), &model.shapes, &model.parts.first);
+        }
         match &mut plan.tables {
-            Tables::Single(tables) => tables.0.occluders = hiding.to_vec(),
-            Tables::Double(tables) => tables.0.occluders = hiding.to_vec(),
+            Tables::Single(tables) => ask_only(&mut tables.0, hiding),
+            Tables::Double(tables) => ask_only(&mut tables.0, hiding),
         }
     }
     let [x1, y1] = scene.image.size;

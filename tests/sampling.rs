@@ -19,11 +19,12 @@ use etalon::sample::warp::{
     cosine_hemisphere, cosine_hemisphere_pdf, square_to_disk, uniform_sphere,
 };
 use etalon::scene::SamplerKind;
+use etalon::stats::family::sidak;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::{Job, Kernel, PRECISIONS, Precision, best, map, on_each};
-use crate::statistics_support::{chi_square, moments, normal_p, sidak, t_test, variance_p};
+use crate::statistics_support::{chi_square, moments, normal_p, t_test, variance_p};
 use crate::truth_file::{list, number, truth};
 
 /// Level of all random tests of this module together.

@@ -2,10 +2,15 @@
 
 mod cli;
 mod cli_render;
+mod compare;
+mod convergence;
+mod failure_maps;
 mod film_files;
 mod fresnel;
+mod implicit_afar;
 mod implicit_expression;
 mod implicit_field;
+mod implicit_fuzz;
 mod implicit_interval;
 mod implicit_invented;
 mod implicit_oracle;
@@ -15,8 +20,12 @@ mod lanes_support;
 mod lights;
 mod many_objects;
 mod metrics;
+mod mirror_chains;
+mod mistakes;
 mod occluders;
 mod oracle_primitives;
+mod oracle_support;
+mod references;
 mod render_goal;
 mod sampling;
 mod scene_file;

@@ -10,7 +10,8 @@ use etalon::study::charts::USUAL_ERROR;
 use etalon::study::choice::Choice;
 
 use super::values::{
-    Crop, GoalTarget, Instructions, Layer, Panels, Pixel, PlanChoice, Seconds, Size, setting, share,
+    Crop, GoalTarget, Instructions, Layer, Panels, Pixel, PlanChoice, Seconds, Size, finite,
+    setting, share,
 };
 
 /// A physically based spectral renderer, and the instrument that proves its pictures right.
@@ -39,6 +40,8 @@ pub enum Command {
     Trace(Trace),
     /// Follow one camera path of a rendering and print each of its steps.
     Replay(Replay),
+    /// Compare a picture with another or with a number: metrics, and whether noise explains it.
+    Compare(Compare),
     /// Compare the root finders of implicit surfaces over rays whose first hits are known.
     Finders(Finders),
     /// Measure how a scene's error falls with samples and seconds, for a grid of choices.
@@ -297,6 +300,38 @@ impl Replay {
     }
 }
 
+/// Arguments of `etalon compare`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+B is the reference: its mean is what relative errors are relative to. Where both pictures know the \
+variances of their pixels, a verdict follows: image means, blocks of pixels and the distribution of \
+all blocks are tested at a family-wise level of 1e-3, and the smallest bias that would have been \
+caught is printed.
+
+Exit codes: 0 consistent, 1 not, 2 could not compare (other size, other scene, no common channel, \
+values that are not numbers, no variances).
+
+Examples:
+  etalon compare picture.exr reference/cornell_box.exr --heatmap difference.png
+  etalon compare furnace.exr --truth 2 --json")]
+pub struct Compare {
+    /// The picture.
+    #[arg(value_name = "A.exr")]
+    pub a: PathBuf,
+    /// The picture it is compared with.
+    #[arg(value_name = "B.exr", required_unless_present = "truth")]
+    pub b: Option<PathBuf>,
+    /// Compare the mean of each channel with this number instead.
+    #[arg(long, value_name = "VALUE", conflicts_with = "b", allow_negative_numbers = true, value_parser = finite)]
+    pub truth: Option<f64>,
+    /// Print everything as JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Paint where they differ: red where A is too bright, blue where it is too dark.
+    #[arg(long, value_name = "OUT.png", conflicts_with = "truth")]
+    pub heatmap: Option<PathBuf>,
+}
+
 /// Arguments of `etalon finders`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -325,6 +360,13 @@ pub struct Finders {
     /// Paint the pixels of this surface instead.
     #[arg(long, value_name = "SURFACE")]
     pub map: Option<String>,
+    /// Map where each method fails instead: all shapes and precisions over families of rays that grow
+    /// harder.
+    #[arg(long, conflicts_with_all = ["map", "rays", "shapes"])]
+    pub failures: bool,
+    /// Rays a shape, family and difficulty of the failure maps.
+    #[arg(long, value_name = "RAYS", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub count: u32,
     /// Width and height of each map in pixels.
     #[arg(long, value_name = "PIXELS", default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub size: u32,

@@ -6,7 +6,9 @@ use std::path::PathBuf;
 use etalon::film;
 use etalon::plan::PlanError;
 use etalon::render::bins::BinError;
+use etalon::render::target::Singular;
 use etalon::scene::SceneError;
+use etalon::study::compare::CompareError;
 use etalon::study::finders::OracleError;
 
 use super::trace::RayError;
@@ -21,11 +23,8 @@ pub enum CommandError {
     #[error(transparent)]
     Rays(#[from] RayError),
     /// An object's matrix has no inverse.
-    #[error("error: the object \"{name}\" has a transform that is not invertible")]
-    Singular {
-        /// The object.
-        name: String,
-    },
+    #[error("error: {0}")]
+    Singular(#[from] Singular),
     /// A table cannot be read.
     #[error("error: cannot read {}: {reason}", path.display())]
     Table {
@@ -56,6 +55,15 @@ pub enum CommandError {
     /// The scene cannot be carried out.
     #[error("error: {0}")]
     Plan(#[from] PlanError),
+    /// Pictures cannot be compared.
+    #[error("error: {0}")]
+    Compare(#[from] CompareError),
+    /// Pictures of different scenes: how they differ, and which of them is stale.
+    #[error("error: {0}{sep}{1}", sep = if .1.is_empty() { "" } else { "; " })]
+    Scenes(String, String),
+    /// No verdict on two pictures.
+    #[error("error: no verdict: {0}")]
+    NoVerdict(String),
     /// A picture cannot be written.
     #[error("error: {0}")]
     Film(#[from] film::Error),

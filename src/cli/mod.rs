@@ -2,6 +2,7 @@
 
 mod args;
 mod chart;
+mod compare;
 mod coverage;
 mod error;
 mod finders;
@@ -43,6 +44,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Info(info) => info::run(info),
         Command::Trace(trace) => trace::run(trace),
         Command::Replay(replay) => replay::run(replay),
+        Command::Compare(compare) => compare::run(compare),
         Command::Finders(finders) => finders::run(finders),
         Command::Study(study) => study::run(study),
         Command::Coverage(coverage) => coverage::run(coverage),

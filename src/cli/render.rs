@@ -13,6 +13,7 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 
 use etalon::film::{exr, png, whole};
+use etalon::plan::explain;
 use etalon::render::{Instructions, Request, render, render_binned};
 use etalon::scene;
 use rayon::ThreadPool;
@@ -94,6 +95,9 @@ fn carry_out(
     if !arguments.quiet && !job.plan.left_out.is_empty() {
         let names = job.plan.left_out.join(", ");
         tell(&format!("note: light left out: {names}"));
+    }
+    if let Some(doubt) = explain::doubt(&job.plan).filter(|_| !arguments.quiet) {
+        tell(&format!("note: single precision: {doubt}"));
     }
     let goal = goal::wanted(arguments);
     let mut chosen = None;

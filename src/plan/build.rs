@@ -4,14 +4,18 @@ use glam::DVec3;
 
 use super::PlanError;
 use super::choose::Choices;
-use super::extent::{about_camera, columns, is_similarity, perpendicular, translation};
+use super::extent::{
+    about_camera, columns, is_right_circular, is_similarity, perpendicular, translation,
+};
 use super::occluders::occluders;
 use crate::camera::LaneCamera;
 use crate::integrate::develop::Spectrometer;
+use crate::integrate::list::List;
 use crate::integrate::model::{Checker, Many, Model, ObjectShading, Scatter};
 use crate::integrate::parts::Parts;
 use crate::light::{
-    CubeLight, LaneLight, LightShape, PlanarLight, RectangleLight, SmallLights, SphereLight,
+    CubeLight, CylinderLight, LaneLight, LightShape, PlanarLight, RectangleLight, SmallLights,
+    SphereLight,
 };
 use crate::math::affine::Affine;
 use crate::math::lanes::Scalar;
@@ -59,13 +63,14 @@ pub fn build<T: Scalar>(
         .as_ref()
         .map(|spectrum| builder.spectrum(spectrum));
     let lights = builder.pick();
-    let all = 0..scene.objects.len() as u32;
+    let all: Vec<u32> = (0..scene.objects.len() as u32).collect();
     let occluders = if choices.full {
-        all.collect()
+        all.clone()
     } else {
         let lit: Vec<u32> = lights.iter().map(|light| light.object).collect();
         occluders(scene, &lit, T::ROUNDOFF)
     };
+    let parts = Parts::new(&builder.shapes, &builder.shading);
     let many = builder.bounded.len() > LARGEST_LIST;
     let model = Model {
         hierarchy: many.then(|| {
@@ -85,8 +90,9 @@ pub fn build<T: Scalar>(
         ),
         max_depth: scene.image.max_depth.unwrap_or(u32::MAX),
         needs: choices.needs,
-        occluders,
-        parts: Parts::new(&builder.shapes, &builder.shading),
+        list: List::new(all, &builder.shapes, &parts.first),
+        occluders: List::new(occluders, &builder.shapes, &parts.first),
+        parts,
         shapes: builder.shapes,
         implicits: builder.implicits,
         shading: builder.shading,
@@ -185,8 +191,12 @@ impl<T: Scalar> Builder<T> {
         if !inverse.rows.iter().flatten().all(|x| x.is_finite()) {
             return None;
         }
-        self.shapes
-            .push(LaneShape::new(kind, &to_world, &inverse, self.reach));
+        self.shapes.push(LaneShape::new(
+            kind,
+            &to_world,
+            &inverse,
+            START * self.reach,
+        ));
         match &object.shape {
             Shape::Implicit(implicit) => {
                 let lanes = LaneImplicit::new(implicit, &to_world, &inverse).ok()?;
@@ -334,6 +344,10 @@ impl<T: Scalar> Builder<T> {
     }
 }
 
+/// How far rays usually start, over the largest coordinate of a bounded object: nearly all points
+/// that a camera sees of an infinite floor are within that.
+const START: f64 = 8.0;
+
 /// Step of the probabilities of lights: that of uniform numbers in single precision, 2⁻²⁴.
 const PROBABILITY_STEP: f64 = 1.0 / (1 << 24) as f64;
 
@@ -394,6 +408,12 @@ fn area_light<T: Scalar>(
                 LightShape::Cube(CubeLight::new(centre, [a, b, c], normals, emits)),
                 area,
             ))
+        }
+        Shape::Cylinder if is_right_circular(&placement.to_world) => {
+            let (radius, height) = (a.length(), 2.0 * c.length());
+            let area = 2.0 * std::f64::consts::PI * radius * (radius + height);
+            let light = CylinderLight::new(centre, [a, b], c, emits);
+            Some((LightShape::Cylinder(light), area))
         }
         Shape::Sphere | Shape::Cylinder | Shape::Plane | Shape::Implicit(_) => None,
     }

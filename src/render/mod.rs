@@ -8,6 +8,7 @@ pub mod memory;
 pub mod pass;
 pub mod replay;
 pub mod session;
+pub mod target;
 pub mod tile;
 
 pub use crate::math::instructions::Instructions;

@@ -22,7 +22,7 @@ pub const SMAPE_EPSILON: f64 = 1e-2;
 /// Noise is independent from pixel to pixel, so the spread holds the noise of each term and, beside
 /// it, how much the terms' expectations differ from pixel to pixel: the standard error is never too
 /// small on average, and too large where the error has a structure.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Metric {
     /// The metric.
     pub value: f64,
@@ -32,7 +32,7 @@ pub struct Metric {
 
 impl Metric {
     /// The mean of terms.
-    fn mean(terms: impl Iterator<Item = f64> + Clone) -> Self {
+    fn of_terms(terms: impl Iterator<Item = f64> + Clone) -> Self {
         let count = terms.clone().count() as f64;
         let value = terms.clone().sum::<f64>() / count;
         let squares: f64 = terms.map(|term| (term - value) * (term - value)).sum();
@@ -40,6 +40,12 @@ impl Metric {
             value,
             standard_error: (squares / (count - 1.0) / count).sqrt(),
         }
+    }
+
+    /// The mean of values, one a pixel.
+    #[must_use]
+    pub fn mean(values: &[f64]) -> Self {
+        Self::of_terms(values.iter().copied())
     }
 
     fn scaled(self, factor: f64) -> Self {
@@ -53,7 +59,7 @@ impl Metric {
 /// Signed mean error, Σ (x − r) / n, in the unit of the values.
 #[must_use]
 pub fn mean_error(x: &[f64], r: &[f64]) -> Metric {
-    Metric::mean(errors(x, r))
+    Metric::of_terms(errors(x, r))
 }
 
 /// Signed mean error over the mean reference value.
@@ -65,7 +71,7 @@ pub fn relative_mean_error(x: &[f64], r: &[f64]) -> Metric {
 /// Mean squared error, Σ (x − r)² / n.
 #[must_use]
 pub fn mse(x: &[f64], r: &[f64]) -> Metric {
-    Metric::mean(errors(x, r).map(|error| error * error))
+    Metric::of_terms(errors(x, r).map(|error| error * error))
 }
 
 /// Root of the mean squared error, in the unit of the values; its standard error is that of the
@@ -92,7 +98,7 @@ pub fn relmse(x: &[f64], r: &[f64], variance: Option<&[f64]>) -> Metric {
     }
     let epsilon = RELMSE_EPSILON * mean(r) * mean(r);
     let known = |pixel: usize| variance.map_or(0.0, |variance| variance[pixel]);
-    Metric::mean(
+    Metric::of_terms(
         errors(x, r)
             .enumerate()
             .map(|(pixel, error)| (error * error - known(pixel)) / (r[pixel] * r[pixel] + epsilon)),
@@ -106,7 +112,7 @@ pub fn smape(x: &[f64], r: &[f64]) -> Metric {
     let epsilon = SMAPE_EPSILON * mean(r).abs();
     let sizes = x.iter().zip(r).map(|(x, r)| x.abs() + r.abs() + epsilon);
     let terms = errors(x, r).zip(sizes);
-    Metric::mean(terms.map(|(error, size)| 2.0 * error.abs() / size))
+    Metric::of_terms(terms.map(|(error, size)| 2.0 * error.abs() / size))
 }
 
 /// The metric of a picture from those of its channels. Channels share their paths, so their noise

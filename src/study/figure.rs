@@ -279,7 +279,7 @@ impl Mark {
 
     fn bar(&self) -> Option<[(f64, f64); 2]> {
         let bar = self.half > 0.0 && self.half < self.y;
-        bar.then(|| [(self.x, self.y - self.half), (self.x, self.y + self.half)])
+        bar.then_some([(self.x, self.y - self.half), (self.x, self.y + self.half)])
     }
 }
 

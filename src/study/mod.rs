@@ -1,14 +1,17 @@
-//! Comparisons that are worth a chart.
+//! Comparisons: of pictures with pictures and with truths, and of methods with each other.
 //!
 //! A study ([`run`]) renders every point of a [`grid`] of choices several times with independent
 //! seeds, compares each render with a [`reference`], and keeps one [`row`] of each in a
 //! [`journal`]; [`budget`] sees to it that this fits into the time there is.
 
+pub mod agreement;
 pub mod axis;
 pub mod budget;
 pub mod charts;
 pub mod choice;
+pub mod compare;
 pub mod coverage;
+pub mod failures;
 pub mod figure;
 pub mod finders;
 pub mod grid;

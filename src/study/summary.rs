@@ -162,13 +162,9 @@ impl Identity {
     /// What distinguishes this curve among all.
     fn label(&self, all: &[Self]) -> String {
         let mut words: Vec<String> = Vec::new();
-        let texts: [(fn(&Self) -> &String, bool); 4] = [
-            (|i| &i.renderer, false),
-            (|i| &i.scene, false),
-            (|i| &i.panel, false),
-            (|i| &i.settings, false),
-        ];
-        for (text, _) in texts {
+        let texts: [fn(&Self) -> &String; 4] =
+            [|i| &i.renderer, |i| &i.scene, |i| &i.panel, |i| &i.settings];
+        for text in texts {
             if all.iter().any(|other| text(other) != text(self)) && !text(self).is_empty() {
                 words.push(text(self).clone());
             }
