@@ -10,8 +10,9 @@ use image::{ExtendedColorType, ImageEncoder as _};
 use super::figure::Figure;
 use super::reference::Reference;
 use super::row::Row;
-use super::run::{Request, Study, picture_name};
+use super::run::{Request, Study};
 use super::summary::{Curve, Mean, Point};
+use super::work::picture_name;
 use crate::film::{exr, png};
 use crate::stats::metrics::{RELMSE_EPSILON, mean};
 
