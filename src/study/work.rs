@@ -21,7 +21,7 @@ use crate::render::Rendered;
 /// Share of the budget that the pilot takes, and the least and the most that it takes of a point,
 /// seconds.
 const PILOT_SHARE: f64 = 0.02;
-const PILOT: [f64; 2] = [0.02, 0.2];
+const PILOT: [f64; 2] = [0.02, 0.1];
 
 /// What renders cost, by choices other than the number of samples.
 #[derive(Debug, Clone, Default)]
