@@ -39,15 +39,34 @@ pub struct Chosen {
 
 /// Samples a pixel of the first pilot: enough for two replicates of a few points each.
 const FIRST: u32 = 8;
-/// How much larger the next pilot is.
-const GROWTH: u32 = 4;
-/// Renders of a pilot. The largest of many estimated errors is too large by chance; with four
-/// renders a block's standard error has 4 × 64 degrees of freedom with two replicates, so its
-/// relative standard error is 1/√512, 4 %, and the largest of 10⁴ blocks about 4 of those too large.
-const RENDERS: u32 = 4;
-/// A pilot is large enough when the goal asks for no more than so many times its samples: then
-/// all pilots together take about two thirds of the picture's time.
-const NEAR: f64 = 8.0;
+/// How much larger the next pilot is at most.
+const GROWTH: f64 = 4.0;
+
+impl Target {
+    /// Renders of a pilot. A picture's mean has the degrees of freedom of all its pixels. Of blocks
+    /// the largest estimated error counts, which is too large by chance: with four renders of two
+    /// replicates a block's standard error has 4 × 64 degrees of freedom, so its relative standard
+    /// error is 1/√512, 4 %, and the largest of 10⁴ blocks may be four of those too large.
+    fn renders(self) -> u32 {
+        match self {
+            Self::Image => 1,
+            Self::Block => 4,
+        }
+    }
+
+    /// The picture's samples over those of the last pilot: near enough that the law between the
+    /// two hardly matters (scrambled nets have none between powers of two), and so that all
+    /// pilots together cost little more than the picture.
+    fn near(self) -> f64 {
+        match self {
+            Self::Image => 2.0,
+            Self::Block => 4.0,
+        }
+    }
+}
+
+/// A pilot will do that is so much smaller than it was meant to be.
+const SLACK: f64 = 1.5;
 /// Slopes of the standard error over samples: independent samples have −1/2, and no sampler here
 /// falls faster than −1 for long (smooth integrands, strata: Mitchell 1996).
 const SLOPES: [f64; 2] = [-1.0, -0.5];
@@ -68,40 +87,49 @@ pub fn choose(
     mut pilot: impl FnMut(u32, u32) -> Option<Rendered>,
 ) -> Option<Chosen> {
     let (mut samples, mut spent, mut number) = (FIRST.min(most), 0, 0);
+    let near = goal.target.near();
     let mut before: Option<(u32, f64)> = None;
     loop {
+        let renders = goal.target.renders();
         let mut sums: Vec<f64> = Vec::new();
-        for _ in 0..RENDERS {
+        for _ in 0..renders {
             let squares = errors(&pilot(samples, number)?, goal.target);
             number += 1;
             spent += u64::from(samples);
             sums.resize(squares.len(), 0.0);
             for (sum, square) in sums.iter_mut().zip(squares) {
-                *sum += square / f64::from(RENDERS);
+                *sum += square / f64::from(renders);
             }
         }
         let error = sums.into_iter().map(f64::sqrt).fold(0.0, largest);
-        let slope = before.map_or(SLOPES[1], |(fewer, larger)| {
-            let times = f64::from(samples) / f64::from(fewer);
-            let slope = libm::log(error / larger) / libm::log(times);
-            slope.clamp(SLOPES[0], SLOPES[1])
-        });
-        // Down to fewer samples than the pilot's, strata have gained less than above it.
-        let slope = if error < goal.error { SLOPES[1] } else { slope };
-        let times = libm::pow(goal.error / error, 1.0 / slope);
-        let wanted = f64::from(samples) * times;
-        // Two samples are the least that have a standard error.
-        let enough = (wanted.ceil().min(f64::from(most)) as u32).max(2.min(most));
-        if times <= NEAR || samples >= most / GROWTH {
+        let wanted = f64::from(samples) * times(goal.error, (samples, error), before);
+        let enough = wanted <= SLACK * near * f64::from(samples);
+        if enough || samples == most || error.is_infinite() {
+            // Two samples are the least that have a standard error.
+            let chosen = (wanted.ceil().min(f64::from(most)) as u32).max(2.min(most));
             return Some(Chosen {
-                samples: enough,
+                samples: chosen,
                 spent,
                 short: wanted > f64::from(most),
             });
         }
         before = Some((samples, error));
-        samples *= GROWTH;
+        let next = (GROWTH * f64::from(samples)).min(wanted / near).ceil();
+        samples = (next.min(f64::from(most)) as u32).max(samples + 1);
     }
+}
+
+/// How many times the samples of a pilot the wanted error takes, by the law through the pilot
+/// before it.
+fn times(wanted: f64, (samples, error): (u32, f64), before: Option<(u32, f64)>) -> f64 {
+    let slope = before.map_or(SLOPES[1], |(fewer, larger)| {
+        let ratio = f64::from(samples) / f64::from(fewer);
+        let slope = libm::log(error / larger) / libm::log(ratio);
+        slope.clamp(SLOPES[0], SLOPES[1])
+    });
+    // Down to fewer samples than the pilot's, strata have gained less than above it.
+    let slope = if error < wanted { SLOPES[1] } else { slope };
+    libm::pow(wanted / error, 1.0 / slope)
 }
 
 /// The larger number; what is no number counts as largest.

@@ -9,6 +9,7 @@ pub mod axis;
 pub mod budget;
 pub mod charts;
 pub mod choice;
+pub mod clock;
 pub mod compare;
 pub mod coverage;
 pub mod failures;
@@ -27,6 +28,7 @@ pub mod run;
 pub mod seeds;
 pub mod subject;
 pub mod summary;
+pub mod work;
 
 use std::path::PathBuf;
 
