@@ -54,10 +54,10 @@ impl Family {
     /// What its number is, for an axis.
     pub fn axis(self) -> &'static str {
         match self {
-            Self::Graze => "offset from the silhouette",
+            Self::Graze => "offset from silhouette",
             Self::Distance => "distance / size",
             Self::Condition => "condition number",
-            Self::Gap => "gap between two sheets",
+            Self::Gap => "gap between sheets",
             Self::Aspect => "aspect ratio",
         }
     }
