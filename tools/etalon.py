@@ -22,18 +22,23 @@ def render(scene, output, arguments, **image):
     """Renders to the file `output` with the command line's `binary`, `threads` and `wavelengths`;
     `image` are options that stand for keys of [image], such as spp=64 or size=(64, 48). Returns
     seconds of the whole process, by the clock and of the processors together."""
-    command = [str(arguments.binary), "render", str(scene), "-o", str(output), "--quiet"]
-    command += ["--threads", str(arguments.threads)]
+    options = []
     for key, value in (image | {"wavelengths": arguments.wavelengths}).items():
         if value is not None:
             text = "x".join(map(str, value)) if key == "size" else str(value)
-            command += [f"--{key.replace('_', '-')}", text]
+            options += [f"--{key.replace('_', '-')}", text]
+    return run(arguments.binary, scene, output, options, arguments.threads)
+
+
+def run(binary, scene, output, options, threads):
+    """Renders with options as on the command line; returns seconds as [`render`]."""
+    command = [str(binary), "render", str(scene), "-o", str(output), "--quiet", "--threads", str(threads), *options]
     before = children_seconds()
     start = time.perf_counter()
     try:
         result = subprocess.run(command, capture_output=True, text=True, check=False)
     except OSError as error:
-        raise EtalonError(f"{arguments.binary}: {error.strerror}; build it with cargo build --release") from error
+        raise EtalonError(f"{binary}: {error.strerror}; build it with cargo build --release") from error
     seconds = np.array([time.perf_counter() - start, children_seconds() - before])
     if result.returncode != 0:
         raise EtalonError(f"{' '.join(command)}\n{result.stderr.strip()}")

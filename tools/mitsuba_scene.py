@@ -8,20 +8,27 @@ that an equal-energy spectrum of value 1 has Y = 1. Results here are multiplied 
 106.8569149. Mitsuba's observer has 5 nm steps, which leaves up to 2e-3 in X and Z and 1e-3 in Y of a
 red or green paint; `--film observer` makes it use the published 1 nm table (and its wavelengths).
 
-What is not the same: dispersion (Mitsuba's glass has the index at 550 nm at every wavelength), and a
-plane is a square that ends 1000 camera distances away. Implicit surfaces, a lens in parallel projection,
-checkerboards on anything but flat squares and emitting spheres that are ellipsoids have no counterpart.
+What is not the same: dispersion (Mitsuba's glass has the index at 550 nm at every wavelength;
+reference.py goes one wavelength at a time), a plane ends a million camera distances away, without the pattern of a checkerboard beyond a thousand,
+and an implicit surface is a fine mesh (implicit_mesh.py). A lens in parallel projection, checkerboards
+on anything but squares and cubes, emitting spheres that are ellipsoids and emitting implicit surfaces have no
+counterpart.
 Russian roulette starts at Mitsuba's own default depth.
 """
 
 import argparse
+import json
 import sys
 import warnings
+from dataclasses import replace
+from functools import cache
+from itertools import product
 from pathlib import Path
 
 import mitsuba as mi
 import numpy as np
 
+import implicit_mesh
 import scene_file
 import spectra
 from scene_file import SceneError
@@ -30,7 +37,11 @@ MITSUBA_VERSION = "3.9.1"
 DEFAULT_VARIANT = "llvm_ad_spectral"
 MITSUBA_Y_INTEGRAL = 106.7502594
 ETALON_Y_INTEGRAL = 106.856914916767
-PLANE_EXTENT = 1000
+# Half sizes, in camera distances, of the squares that stand for a plane: one with the plane's own material,
+# in whose texture coordinates single precision tells the cells of a checkerboard apart, and a ring around it
+# with the mean of the cells, so far out that the horizon is where it belongs.
+PLANE_EXTENT = 1e3
+HORIZON_EXTENT = 1e6
 # Distance between the two copies of a surface that emits on both sides, of its extent: a hundred
 # times the rounding of coordinates in single precision, so that rays tell the copies apart.
 SIDES_GAP = 1e-5
@@ -69,10 +80,11 @@ def transform(matrix):
 
 
 class Builder:
-    """One scene file on its way to a Mitsuba dict."""
+    """One scene file on its way to a Mitsuba dict; glass has the index at `wavelength` nm."""
 
-    def __init__(self, scene, folder):
+    def __init__(self, scene, folder, wavelength=None):
         self.scene = scene
+        self.wavelength = wavelength
         self.spectra = spectra.Spectra(scene.get("spectra", {}), folder)
         camera = scene["camera"]
         self.view = np.linalg.norm(np.subtract(camera["to"], camera["from"]))
@@ -88,12 +100,14 @@ class Builder:
     def build(self, sampler, seed, film):
         """The whole scene; see [`render`] for the choices."""
         image = self.scene["image"]
+        if image.get("sampler") == "center":
+            raise SceneError('sampler = "center" has no counterpart: Mitsuba\'s samplers fill the pixel')
         result = {
             "type": "scene",
             "integrator": {"type": "path", "max_depth": image.get("max_depth", -1)},
             "sensor": self.sensor()
             | {
-                "film": make_film(image["size"], film),
+                "film": film,
                 "sampler": {"type": sampler, "sample_count": image["spp"], "seed": seed},
             },
         }
@@ -115,7 +129,7 @@ class Builder:
         camera = self.scene["camera"]
         up = camera.get("up", [0, 1, 0])
         place = mi.ScalarTransform4f().look_at(origin=camera["from"], target=camera["to"], up=up)
-        clip = {"near_clip": float(1e-3 * self.view), "far_clip": float(1e5 * self.view)}
+        clip = {"near_clip": float(1e-3 * self.view), "far_clip": float(10 * HORIZON_EXTENT * self.view)}
         lens = camera.get("lens", {"radius": 0})
         width, height = self.scene["image"]["size"]
         if "orthographic" in camera:
@@ -155,10 +169,24 @@ class Builder:
 
     def shapes(self, place, material, key, extra):
         """The Mitsuba shapes of a placed shape with the further properties `extra`."""
+        if place.kind == "cube" and "checkerboard" in material:
+            if extra:
+                raise SceneError(f"{place.name}: a checkered cube that emits has no counterpart in Mitsuba")
+            return self.checkered_cube(place, material, key)
         bsdf = {"bsdf": self.bsdf(place, material)}
+        if place.kind == "implicit":
+            if extra:
+                raise SceneError(f"{place.name}: a mesh of an implicit surface that emits is no counterpart")
+            return {key: implicit_shape(place, bsdf["bsdf"])}
         to_world = unmirrored(place.to_world)
         if place.kind == "plane":
             to_world = to_world @ np.diag([*plane_scale(to_world, self.view), 1, 1])
+            ring = {"bsdf": self.mean_bsdf(place, material)} | extra
+            far = {
+                f"{key}_far{side}": {"type": "rectangle", "to_world": transform(to_world @ local)} | ring
+                for side, local in enumerate(ring_sides(HORIZON_EXTENT / PLANE_EXTENT))
+            }
+            return far | {key: {"type": "rectangle", "to_world": transform(to_world)} | bsdf | extra}
         if place.kind == "sphere" and not is_similarity(to_world):
             if extra:
                 raise SceneError(f"{place.name}: Mitsuba cannot place an emitting sphere by a general transform")
@@ -176,6 +204,23 @@ class Builder:
         }
         return {key + part: shape for part, shape in parts.items()}
 
+    def checkered_cube(self, place, material, key):
+        """Six checkered rectangles: Mitsuba's texture is over u, v, the scene's over x, y, z."""
+        result = {}
+        for axis, side in product(range(3), (-1, 1)):
+            order = [(axis + 1) % 3, (axis + 2) % 3, axis]
+            face = np.zeros((4, 4))
+            face[order, range(3)], face[3, 3] = (1, 1, 1), 1
+            face[axis, 3] = side
+            size = np.array([*place.size[order[:2]], 1.0])
+            colours = material["checkerboard"]
+            if np.floor(side * place.size[axis] / material["cell"]) % 2:
+                colours = colours[::-1]
+            rectangle = replace(place, kind="rectangle", size=size, to_world=place.to_world @ face)
+            board = {"checkerboard": colours, "cell": material["cell"]}
+            result |= self.shapes(rectangle, board, f"{key}_face{axis}{'-+'[side > 0]}", {})
+        return result
+
     def bsdf(self, place, material):
         """The scattering of a material on a shape."""
         if "diffuse" in material:
@@ -183,10 +228,19 @@ class Builder:
         if "mirror" in material:
             return two_sided(self.conductor(material["mirror"]))
         if "glass" in material:
-            return {"type": "dielectric", "int_ior": glass_index(material["glass"], place.name), "ext_ior": 1.0}
+            if self.wavelength is None and has_dispersion(material["glass"]):
+                warnings.warn(f"{place.name}: Mitsuba has no dispersion; n is that at 550 nm", stacklevel=2)
+            return {"type": "dielectric", "int_ior": glass_index(material["glass"], self.wavelength), "ext_ior": 1.0}
         if "checkerboard" in material:
             return two_sided({"type": "diffuse", "reflectance": self.checkerboard(place, material)})
         return two_sided({"type": "diffuse", "reflectance": spectrum(0.0)})
+
+    def mean_bsdf(self, place, material):
+        """The scattering of a material; of a checkerboard, the mean of its cells."""
+        if "checkerboard" not in material:
+            return self.bsdf(place, material)
+        cells = [two_sided({"type": "diffuse", "reflectance": self.reflectance(c)}) for c in material["checkerboard"]]
+        return {"type": "blendbsdf", "weight": 0.5, "even": cells[0], "odd": cells[1]}
 
     def conductor(self, mirror):
         """A smooth mirror: a metal of the project's own tables, n and k, or an ideal reflectance."""
@@ -229,6 +283,14 @@ def canonical_parts(kind):
     return {"_side": ("cylinder", side), "_top": ("disk", top), "_bottom": ("disk", bottom)}
 
 
+def ring_sides(size):
+    """Placements (4×4) of four rectangles around the canonical one, whose outline is `size` times as large."""
+    middle, half = (size + 1) / 2, (size - 1) / 2
+    for sign in (-1, 1):
+        yield scene_file.step({"translate": [sign * middle, 0, 0]}) @ np.diag([half, size, 1, 1])
+        yield scene_file.step({"translate": [0, sign * middle, 0]}) @ np.diag([1, half, 1, 1])
+
+
 def plane_scale(to_world, view):
     """Canonical half sizes (2) of the square that stands for a plane: 1000 camera distances."""
     return PLANE_EXTENT * view / np.linalg.norm(to_world[:3, :2], axis=0)
@@ -258,44 +320,102 @@ def moved(place, side):
         matrix = scene_file.step({"translate": shift if side == "front" else -shift}) @ matrix
     elif side == "back":
         matrix = matrix @ np.diag([1 - SIDES_GAP] * 3 + [1])
-    return scene_file.Placed(place.kind, place.name, place.material, place.size, matrix)
+    return replace(place, to_world=matrix)
 
 
-def glass_index(glass, name):
-    """The index of refraction at 550 nm, with a warning if it is another elsewhere."""
-    squared = 0.55**2
-    if isinstance(glass, dict) and "ior" in glass:
+def has_dispersion(glass):
+    """Whether the index of refraction depends on the wavelength."""
+    return not (isinstance(glass, dict) and "ior" in glass)
+
+
+def glass_index(glass, nm=None):
+    """The index of refraction at a wavelength, 550 nm if none is given."""
+    squared = (1e-3 * (nm or 550)) ** 2
+    if not has_dispersion(glass):
         return float(glass["ior"])
     if isinstance(glass, dict) and "cauchy" in glass:
-        index = sum(a / squared**i for i, a in enumerate(glass["cauchy"]))
-    else:
-        b, c = GLASSES[glass.lower()] if isinstance(glass, str) else (glass["sellmeier"]["b"], glass["sellmeier"]["c"])
-        index = np.sqrt(1 + sum(b * squared / (squared - c) for b, c in zip(b, c, strict=True)))
-    warnings.warn(f"{name}: Mitsuba has no dispersion, n = {index:.6f} at every wavelength", stacklevel=2)
-    return float(index)
+        return float(sum(a / squared**i for i, a in enumerate(glass["cauchy"])))
+    b, c = GLASSES[glass.lower()] if isinstance(glass, str) else (glass["sellmeier"]["b"], glass["sellmeier"]["c"])
+    return float(np.sqrt(1 + sum(b * squared / (squared - c) for b, c in zip(b, c, strict=True))))
 
 
-def make_film(size, kind):
+@cache
+def implicit_mesh_of(text):
+    """Field and mesh of the shape that a JSON text describes."""
+    field = implicit_mesh.Field(json.loads(text))
+    return field, implicit_mesh.mesh(field)
+
+
+def implicit_shape(place, bsdf):
+    """A Mitsuba mesh of an implicit surface, with smooth normals."""
+    try:
+        _, (vertices, normals, triangles) = implicit_mesh_of(json.dumps(place.form))
+    except SceneError as error:
+        raise SceneError(f"{place.name}: {error}") from None
+    linear = place.to_world[:3, :3]
+    vertices = vertices @ linear.T + place.to_world[:3, 3]
+    normals = implicit_mesh.unit(normals @ np.linalg.inv(linear))
+    if np.linalg.det(linear) < 0:
+        triangles = triangles[:, ::-1]
+    properties = mi.Properties()
+    properties["bsdf"] = mi.load_dict(bsdf)
+    shape = mi.Mesh("implicit", len(vertices), len(triangles), props=properties, has_vertex_normals=True)
+    values = mi.traverse(shape)
+    values["vertex_positions"] = np.ravel(vertices).astype(np.float32)
+    values["vertex_normals"] = np.ravel(normals).astype(np.float32)
+    values["faces"] = np.ravel(triangles).astype(np.uint32)
+    values.update()
+    return shape
+
+
+def mesh_notes(tables):
+    """What the meshes of a scene are and how far they are from their surfaces, in object coordinates."""
+    notes = []
+    for entry in tables.get("object", []):
+        place = scene_file.placed(entry)
+        if place.kind == "implicit":
+            field, parts = implicit_mesh_of(json.dumps(place.form))
+            found = implicit_mesh.distances(field, *parts)
+            notes.append(
+                f"{place.name}: mesh of {len(parts[2])} triangles; largest distance to the surface "
+                f"{found['outside']:.1e}, mean {found['mean']:.1e}; of the surface to it {found['missed']:.1e}; "
+                f"99.9 % of normals within {found['normal']:.1e} rad"
+            )
+    return notes
+
+
+def box(low, high):
+    """The sensitivity 1 between two wavelengths in nm. Its edges are ramps of 0.1 nm about them,
+    which changes the mean of a smooth spectrum by less than 1e-6."""
+    ramp = 0.05
+    nm = np.array([low - ramp, low + ramp, high - ramp, high + ramp])
+    return spectrum((nm, np.array([0.0, 1.0, 1.0, 0.0])))
+
+
+def make_film(size, kind, bands=()):
     """A film with a box filter in single precision: "standard", Mitsuba's own XYZ, or "observer",
-    three bands with the published colour-matching functions."""
+    the published colour-matching functions and further `bands` [low, high] in nm."""
     film = {"width": size[0], "height": size[1], "component_format": "float32", "rfilter": {"type": "box"}}
     if kind == "standard":
         return film | {"type": "hdrfilm", "pixel_format": "xyz"}
     bars, _ = spectra.observer()
-    bands = {f"band{i}": spectrum((spectra.WHOLE_NM, bar)) for i, bar in enumerate(bars)}
-    return film | {"type": "specfilm"} | bands
+    # Mitsuba sorts channels by name.
+    responses = {f"axis{i}": spectrum((spectra.WHOLE_NM, bar)) for i, bar in enumerate(bars)}
+    responses |= {f"band{i:03}": box(*band) for i, band in enumerate(bands)}
+    return film | {"type": "specfilm"} | responses
 
 
 def load(path, panel=None, image=None, sampler="independent", seed=0, film="standard"):
     """A scene file as a Mitsuba scene; `image` replaces keys of its [image]."""
     tables = scene_file.load(path, panel)
     tables["image"] = tables["image"] | (image or {})
+    film = make_film(tables["image"]["size"], film)
     return mi.load_dict(Builder(tables, Path(path).parent).build(sampler, seed, film))
 
 
 def render(scene, seed=0):
     """Linear XYZ in etalon's normalisation (height×width×3, float64) of a loaded scene."""
-    xyz = np.array(mi.render(scene, seed=seed), np.float64)
+    xyz = np.array(mi.render(scene, seed=seed), np.float64)[..., :3]
     observer = scene.sensors()[0].film().class_name() == "SpecFilm"
     return xyz / ETALON_Y_INTEGRAL * (1 if observer else MITSUBA_Y_INTEGRAL)
 

@@ -33,6 +33,7 @@ class Placed:
     """A shape in canonical coordinates ([-1, 1]³, unit radius) and where it is.
 
     `size` (3): object coordinates per canonical coordinate; `to_world` (4×4): canonical to world.
+    `form`: what the scene file says about the shape.
     """
 
     kind: str
@@ -40,6 +41,7 @@ class Placed:
     material: str
     size: np.ndarray
     to_world: np.ndarray
+    form: dict
 
 
 def merge(base, over):
@@ -61,8 +63,8 @@ def panel_names(path):
         return [panel["name"] for panel in tomllib.load(file).get("panel", [])]
 
 
-def load(path, panel=None):
-    """The tables of a scene file with a panel laid over it."""
+def load(path, panel=None, overrides=()):
+    """The tables of a scene file with a panel and then `key=value` overrides laid over it."""
     with Path(path).open("rb") as file:
         scene = tomllib.load(file)
     panels = {entry["name"]: entry for entry in scene.pop("panel", [])}
@@ -72,7 +74,40 @@ def load(path, panel=None):
         chosen = {key: value for key, value in panels[panel].items() if key != "name"}
         image = {key: chosen.pop(key) for key in IMAGE_KEYS & chosen.keys()}
         merge(scene, chosen | ({"image": image} if image else {}))
+    for override in overrides:
+        lay(scene, override)
     return scene
+
+
+def lay(scene, override):
+    """Lays one `key=value` over a scene, as `etalon render --set` does: a dotted key, and a TOML
+    value or a bare word."""
+    path, _, text = override.partition("=")
+    try:
+        value = tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        value = text
+    *parents, last = path.split(".")
+    table = scene
+    for name in parents:
+        if isinstance(table, list):
+            table = table[int(name)]
+        else:
+            table = table.setdefault(name, {})
+    if isinstance(table, list):
+        table[int(last)] = value
+    else:
+        merge(table, {last: value})
+
+
+def csv_files(value):
+    """Files that the spectra in a table of a scene file name, sorted."""
+    if isinstance(value, dict):
+        own = {value["csv"]} if isinstance(value.get("csv"), str) else set()
+        return sorted(own.union(*(csv_files(part) for part in value.values())))
+    if isinstance(value, list):
+        return sorted(set().union(*(csv_files(part) for part in value)))
+    return []
 
 
 def sin_cos_degrees(degrees):
@@ -122,17 +157,14 @@ def placed(entry):
     if isinstance(shape, str):
         shape = {shape: {}}
     if "implicit" in shape:
-        raise SceneError(
-            f"the implicit surface {shape['implicit']!r} has no counterpart in Mitsuba; "
-            "only spheres, cubes, cylinders, disks, rectangles and planes have"
-        )
+        shape = {"implicit": shape}
     ((kind, form),) = shape.items()
     size = canonical_size(kind, form)
     matrix = np.diag([*size, 1.0])
     matrix[:3, 3] = form.get("center", [0, 0, 0])
     for transform in entry.get("transform", []):
         matrix = step(transform) @ matrix
-    return Placed(kind, entry.get("name", kind), entry["material"], size, matrix)
+    return Placed(kind, entry.get("name", kind), entry["material"], size, matrix, form)
 
 
 def canonical_size(kind, form):
@@ -148,6 +180,6 @@ def canonical_size(kind, form):
             return np.array([form.get("radius", 1.0)] * 2 + [1.0])
         case "rectangle":
             return np.array([*np.array(form.get("size", [2.0, 2.0])) / 2, 1.0])
-        case "plane":
+        case "plane" | "implicit":
             return np.ones(3)
     raise SceneError(f"unknown shape {kind!r}")

@@ -127,6 +127,25 @@ impl Pixels {
         rejected
     }
 
+    /// Replicates that `samples` samples reach.
+    pub fn replicates(&self, samples: u32) -> u32 {
+        self.replicates.count(samples)
+    }
+
+    /// Mean of a pixel's samples in each of its replicates, after `samples` samples in all.
+    pub fn replicate_means(
+        &self,
+        pixel: usize,
+        samples: u32,
+    ) -> impl Iterator<Item = [f64; 3]> + '_ {
+        let count = self.replicates.count(samples) as usize;
+        let sums = &self.sums[pixel * self.slots..][..self.slots];
+        (0..).zip(sums).take(count).map(move |(replicate, sum)| {
+            let own = f64::from(self.replicates.samples_of(replicate, samples));
+            sum.map(|s| s / own)
+        })
+    }
+
     /// Mean and standard error of a pixel after `samples` samples, channels mapped by `channels`.
     pub fn estimate(
         &self,

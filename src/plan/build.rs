@@ -4,7 +4,9 @@ use glam::DVec3;
 
 use super::PlanError;
 use super::choose::Choices;
-use super::extent::{about_camera, columns, is_similarity, perpendicular, translation};
+use super::extent::{
+    about_camera, columns, is_right_circular, is_similarity, perpendicular, translation,
+};
 use super::occluders::occluders;
 use crate::camera::LaneCamera;
 use crate::integrate::develop::Spectrometer;
@@ -12,7 +14,8 @@ use crate::integrate::list::List;
 use crate::integrate::model::{Checker, Many, Model, ObjectShading, Scatter};
 use crate::integrate::parts::Parts;
 use crate::light::{
-    CubeLight, LaneLight, LightShape, PlanarLight, RectangleLight, SmallLights, SphereLight,
+    CubeLight, CylinderLight, LaneLight, LightShape, PlanarLight, RectangleLight, SmallLights,
+    SphereLight,
 };
 use crate::math::affine::Affine;
 use crate::math::lanes::Scalar;
@@ -29,11 +32,13 @@ use crate::spectrum::grid::{CELLS, Cumulative, SpectrumBank};
 use crate::spectrum::ior::RefractiveIndex;
 use crate::spectrum::observer::spectrum_to_xyz;
 
-/// Most objects that are tested one after the other; beyond, boxes are sorted into a hierarchy.
-/// Measured on clouds of one cross-section over a floor (AVX-512): a ball more in the list costs
-/// 2 to 3 ns a camera path, another shape 3.5, and a hierarchy of 25 objects as much as a list of
-/// about 30 balls or 40 other shapes.
-pub const LARGEST_LIST: usize = 32;
+/// What a list of objects may cost at most; beyond, boxes are sorted into a hierarchy. In the same
+/// unit, a ball costs 1 and another shape [`OTHER`]. Measured on clouds of one cross-section over a floor
+/// (AVX-512): a hierarchy takes as long as a list of about 85 balls, or of 20 objects of which two
+/// thirds are cubes and cylinders.
+pub const LARGEST_LIST: usize = 80;
+/// What a shape that is no ball costs in a list.
+const OTHER: usize = 5;
 
 /// Builds model and spectrometer.
 ///
@@ -68,7 +73,15 @@ pub fn build<T: Scalar>(
         occluders(scene, &lit, T::ROUNDOFF)
     };
     let parts = Parts::new(&builder.shapes, &builder.shading);
-    let many = builder.bounded.len() > LARGEST_LIST;
+    let list_costs: usize = builder
+        .bounded
+        .iter()
+        .map(|item| match builder.shapes[item.0 as usize].ball() {
+            Some(_) => 1,
+            None => OTHER,
+        })
+        .sum();
+    let many = list_costs > LARGEST_LIST;
     let model = Model {
         hierarchy: many.then(|| {
             Many::new(
@@ -405,6 +418,12 @@ fn area_light<T: Scalar>(
                 LightShape::Cube(CubeLight::new(centre, [a, b, c], normals, emits)),
                 area,
             ))
+        }
+        Shape::Cylinder if is_right_circular(&placement.to_world) => {
+            let (radius, height) = (a.length(), 2.0 * c.length());
+            let area = 2.0 * std::f64::consts::PI * radius * (radius + height);
+            let light = CylinderLight::new(centre, [a, b], c, emits);
+            Some((LightShape::Cylinder(light), area))
         }
         Shape::Sphere | Shape::Cylinder | Shape::Plane | Shape::Implicit(_) => None,
     }

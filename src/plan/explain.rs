@@ -150,6 +150,7 @@ fn strategy<T>(shape: &LightShape<T>) -> &'static str {
         LightShape::Disk(_) | LightShape::Parallelogram(_) => "by area",
         LightShape::Sphere(_) => "by the solid angle of its cone from outside, by area inside",
         LightShape::Cube(_) => "by the area of its visible faces",
+        LightShape::Cylinder(_) => "by the size of its visible parts",
         LightShape::Point(_) | LightShape::Directional(_) => "by its one direction",
     }
 }

@@ -87,6 +87,13 @@ pub fn is_similarity(to_world: &Affine) -> bool {
     same(a, b) && same(a, c) && perpendicular(a, b) && perpendicular(b, c) && perpendicular(c, a)
 }
 
+/// Whether the map takes the canonical cylinder to a right circular one, up to rounding.
+pub fn is_right_circular(to_world: &Affine) -> bool {
+    let [a, b, c] = columns(to_world);
+    let same = (a.length() - b.length()).abs() <= ROUNDED * a.length();
+    same && perpendicular(a, b) && perpendicular(b, c) && perpendicular(c, a)
+}
+
 /// Pairs are compared up to this many objects; larger scenes are dense, and the pixel decides.
 const LARGEST_PAIRWISE: usize = 512;
 

@@ -72,4 +72,12 @@ impl Plan {
             left_out: needs::left_out(scene),
         })
     }
+
+    /// Takes other random numbers: the plan is then that of the scene with this seed.
+    pub fn reseed(&mut self, seed: u64) {
+        match &mut self.tables {
+            Tables::Single(scene) => scene.0.sequence = scene.0.sequence.reseeded(seed),
+            Tables::Double(scene) => scene.0.sequence = scene.0.sequence.reseeded(seed),
+        }
+    }
 }

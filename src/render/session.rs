@@ -186,6 +186,22 @@ impl Rendered {
         wanted.then(|| self.image(Estimate::UNKNOWN, estimate))
     }
 
+    /// Luminance of every pixel, row by row, in each of its replicates.
+    pub fn replicate_luminances(&self) -> Vec<Vec<f64>> {
+        let mut image = vec![Vec::new(); self.window.pixels()];
+        self.place(|index, tile, pixel| {
+            let means = tile.pixels.replicate_means(pixel, self.samples);
+            image[index] = means.map(|xyz| xyz[1]).collect();
+        });
+        image
+    }
+
+    /// Replicates that every pixel has.
+    pub fn replicates(&self) -> u32 {
+        let tile = self.tiles.first();
+        tile.map_or(0, |tile| tile.pixels.replicates(self.samples))
+    }
+
     fn estimates(&self, channels: impl Fn([f64; 3]) -> [f64; 3] + Copy) -> Vec<Estimate> {
         self.image(Estimate::UNKNOWN, |tile, pixel| {
             tile.pixels.estimate(pixel, self.samples, channels)
@@ -195,16 +211,21 @@ impl Rendered {
     /// A value for each pixel, row by row.
     fn image<V: Copy>(&self, empty: V, value: impl Fn(&Tile, usize) -> V) -> Vec<V> {
         let mut image = vec![empty; self.window.pixels()];
+        self.place(|index, tile, own| image[index] = value(tile, own));
+        image
+    }
+
+    /// Visits every pixel: its place in the image, row by row, its tile, and its place in that.
+    fn place(&self, mut visit: impl FnMut(usize, &Tile, usize)) {
         let width = self.window.width() as usize;
         for tile in &self.tiles {
             let tile_width = tile.window.width() as usize;
             for pixel in 0..tile.window.pixels() {
                 let x = (tile.window.x0 - self.window.x0) as usize + pixel % tile_width;
                 let y = (tile.window.y0 - self.window.y0) as usize + pixel / tile_width;
-                image[y * width + x] = value(tile, pixel);
+                visit(y * width + x, tile, pixel);
             }
         }
-        image
     }
 
     /// Mean luminance; pixels are scrambled independently, so their squared standard errors add.

@@ -8,8 +8,8 @@ use etalon::render::Instructions;
 use etalon::render::session::{Progress, Rendered, Request, render as run};
 use etalon::render::tile::Window;
 use etalon::scene::{Overrides, parse};
+use etalon::stats::{Estimate, family, student};
 use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::scenes::Text;
 
@@ -120,14 +120,8 @@ impl Measurement {
         if self.standard_error == 0.0 {
             return 0.0;
         }
-        two_sided(distance / self.standard_error, self.freedom)
+        student::two_sided(distance / self.standard_error, self.freedom)
     }
-}
-
-/// P(|T| > t) for Student's t.
-pub fn two_sided(t: f64, freedom: f64) -> f64 {
-    let student = StudentsT::new(0.0, 1.0, freedom).unwrap();
-    2.0 * student.cdf(-t)
 }
 
 struct Silent;
@@ -162,24 +156,12 @@ pub fn render(text: &Text, spp: u32, seed: u64, window: Option<Window>) -> Rende
     rendered
 }
 
-/// Mean of a channel over some pixels, with its standard error from their two replicates.
-///
-/// Pixels are scrambled independently, so their squared errors vᵢ add; each has one degree of
-/// freedom, so E vᵢ² = 3 σᵢ⁴, and Welch's and Satterthwaite's (Σ σᵢ²)²/Σ σᵢ⁴ is 3 (Σ vᵢ)²/Σ vᵢ².
-pub fn mean(estimates: &[[f64; 2]]) -> (f64, f64, f64) {
-    let count = estimates.len() as f64;
-    let (mut sum, mut squares, mut fourths) = (0.0, 0.0, 0.0);
-    for [value, error] in estimates {
-        sum += value;
-        squares += error * error;
-        fourths += error.powi(4);
-    }
-    let freedom = if fourths > 0.0 {
-        (3.0 * squares * squares / fourths).clamp(1.0, count)
-    } else {
-        1.0
-    };
-    (sum / count, squares.sqrt() / count, freedom)
+/// Mean of a channel over some pixels, with its standard error from their two replicates: pixels
+/// are scrambled independently, and each variance has one degree of freedom.
+pub fn mean(estimates: &[[f64; 2]]) -> Estimate {
+    let values: Vec<f64> = estimates.iter().map(|[value, _]| *value).collect();
+    let variances: Vec<f64> = estimates.iter().map(|[_, error]| error * error).collect();
+    Estimate::mean_of(&values, &variances, 1.0)
 }
 
 fn measure_at(case: &Case, spp: u32, seed: u64) -> Measurement {
@@ -189,11 +171,11 @@ fn measure_at(case: &Case, spp: u32, seed: u64) -> Measurement {
         .iter()
         .map(|e| [e.mean[case.channel], e.standard_error[case.channel]])
         .collect();
-    let (value, error, freedom) = mean(&estimates);
+    let mean = mean(&estimates);
     Measurement {
-        value: (value + case.offset) * case.factor,
-        standard_error: error * case.factor.abs(),
-        freedom,
+        value: (mean.value + case.offset) * case.factor,
+        standard_error: mean.standard_error * case.factor.abs(),
+        freedom: mean.freedom,
         samples: u64::from(spp) * estimates.len() as u64,
     }
 }
@@ -239,7 +221,7 @@ pub fn measure_all(cases: Vec<Case>) -> Vec<(Case, Measurement)> {
 
 /// The numbers that Holm's step-down procedure (Holm 1979) rejects.
 pub fn judge<'a>(numbers: impl Iterator<Item = (&'a Measurement, f64, &'a Case)>) -> Vec<String> {
-    let mut all: Vec<(f64, String)> = numbers
+    let all: Vec<(f64, String)> = numbers
         .map(|(m, truth, case)| {
             let words = format!(
                 "{}: {} ± {} instead of {truth}",
@@ -248,16 +230,13 @@ pub fn judge<'a>(numbers: impl Iterator<Item = (&'a Measurement, f64, &'a Case)>
             (m.p_value(truth, case), words)
         })
         .collect();
-    holm(&mut all)
+    holm(&all)
 }
 
 /// Holm's procedure for (p-value, description).
-pub fn holm(all: &mut [(f64, String)]) -> Vec<String> {
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let count = all.len();
-    all.iter()
-        .enumerate()
-        .take_while(|(i, (p, _))| *p <= FALSE_ALARM / (count - i) as f64)
-        .map(|(_, (p, words))| format!("{words} (p = {p:.1e})"))
-        .collect()
+pub fn holm(all: &[(f64, String)]) -> Vec<String> {
+    let p_values: Vec<f64> = all.iter().map(|(p, _)| *p).collect();
+    let rejected = family::holm(&p_values, FALSE_ALARM);
+    let words = |index: usize| format!("{} (p = {:.1e})", all[index].1, all[index].0);
+    rejected.into_iter().map(words).collect()
 }

@@ -118,6 +118,10 @@ fn further(
     if rendered.samples < planned && job.scene.image.sampler == SamplerKind::Stratified {
         text("sppPlanned", planned.to_string());
     }
+    if let Some(error) = arguments.target_error {
+        let attribute = ("targetError".to_owned(), Attribute::Double(error));
+        picture.attributes.push(attribute);
+    }
     if job.scene.image.max_depth.is_some() {
         let name = "energyCutStandardError".to_owned();
         let error = Attribute::Double(rendered.cut_off().standard_error);

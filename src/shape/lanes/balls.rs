@@ -127,9 +127,8 @@ impl<T: Scalar> Balls<T> {
         for place in 0..self.count {
             let object = l.int(self.objects[place]);
             let mut out = l.mask(false);
-            // By index: an iterator over lanes would not be inlined.
-            for i in 0..N {
-                out = out | left_out[i].same(object);
+            for left_out in &left_out {
+                out = out | left_out.same(object);
             }
             near = l.select_int(out, near & l.int(!(1 << place)), near);
         }
