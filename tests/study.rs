@@ -299,7 +299,7 @@ fn grids_that_cannot_be_are_refused_with_what_would_fit() {
     assert!(refused(&["--over", "fov=1"]).contains("cannot go over"));
     assert!(refused(&["--over", "sampler"]).contains("is no axis"));
     assert!(refused(&["--over", "spp=1,2", "--over", "spp=4"]).contains("given twice"));
-    assert!(refused(&["--over", "wavelengths=1,8"]).contains("built for 4 and 8"));
+    assert!(refused(&["--over", "wavelengths=1,8"]).contains("image.wavelengths is 1"));
     let mixed = refused(&["--over", "sampler=center,sobol"]);
     assert!(mixed.contains("another picture"), "{mixed}");
     let long = refused(&["--over", "spp=1..16777216x4", "--budget", "2"]);

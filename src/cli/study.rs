@@ -4,11 +4,13 @@ mod watch;
 
 use std::path::{Path, PathBuf};
 
+use etalon::study::axis::Key;
 use etalon::study::charts;
 use etalon::study::figure::Figure;
+use etalon::study::own::MARGIN;
 use etalon::study::run::{Request, Study, run as run_study};
 use etalon::study::subject::Subject;
-use etalon::study::summary::{Curve, curves};
+use etalon::study::summary::{self, Curve, curves};
 use etalon::study::{StudyError, choice, raster, report};
 
 use super::args;
@@ -30,13 +32,11 @@ pub fn run(arguments: &args::Study) -> Result<Answer, CommandError> {
     let study = threads.install(|| run_study(&request, &mut shown));
     shown.finish();
     let study = study.map_err(|error| said(&error))?;
-    let rendered = study.seconds;
     publish(&request, &study)?;
-    say(&summary(&request, &study))?;
+    say(&said_of(&request, &study))?;
     if !study.complete && !arguments.quiet {
         tell("note: interrupted; the same command goes on where this one stopped");
     }
-    debug_assert!(rendered[0] >= rendered[1]);
     Ok(Answer::Good)
 }
 
@@ -124,14 +124,15 @@ pub fn write(path: &Path, content: &[u8]) -> Result<(), CommandError> {
 }
 
 /// What was found, for people.
-fn summary(request: &Request, study: &Study) -> String {
-    let curves = curves(&study.rows, study.grid.abscissa.key);
-    let mut lines: Vec<String> = curves.iter().map(line).collect();
+fn said_of(request: &Request, study: &Study) -> String {
+    let abscissa = study.grid.abscissa.key;
+    let curves = curves(&study.rows, abscissa);
+    let mut lines: Vec<String> = curves.iter().map(|curve| line(curve, abscissa)).collect();
     let [all, rendering] = study.seconds;
     lines.push(format!(
-        "reference: {}, root mean squared standard error {:.2e}",
+        "reference: {}{}",
         study.about_reference,
-        study.reference.rmse()
+        known(study, &curves)
     ));
     lines.push(format!(
         "{}: {} renders; {all:.1} s, {:.1} % of them outside rendering",
@@ -142,8 +143,26 @@ fn summary(request: &Request, study: &Study) -> String {
     lines.join("\n")
 }
 
-fn line(curve: &Curve) -> String {
-    let slope = curve.slope().map_or_else(String::new, |slope| {
+/// How well the reference is known beside the best point.
+fn known(study: &Study, curves: &[Curve]) -> String {
+    let own = study.reference.rmse();
+    if own == 0.0 {
+        return String::new();
+    }
+    let times = summary::best(curves) / own;
+    let enough = if times < MARGIN {
+        "; points near it are known the worse, and marked where it is the larger part"
+    } else {
+        ""
+    };
+    format!(
+        ", root mean squared standard error {own:.2e}, {times:.1} times below the best point's{enough}"
+    )
+}
+
+fn line(curve: &Curve, abscissa: Key) -> String {
+    let slope = curve.slope().filter(|_| abscissa == Key::Spp);
+    let slope = slope.map_or_else(String::new, |slope| {
         let [low, high] = slope.interval();
         format!("; slope {:.3} ({low:.3} to {high:.3})", slope.value)
     });
@@ -151,7 +170,8 @@ fn line(curve: &Curve) -> String {
         let relmse = point.mean(|row| row.relmse).value;
         let seconds = point.mean(|row| row.seconds).value;
         format!(
-            "relmse {relmse:.3e} in {seconds:.3} s at {} ",
+            "relmse {relmse:.3e} in {seconds:.3} s at {}={}",
+            abscissa.column(),
             Figure::number(point.x)
         )
     });

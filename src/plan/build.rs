@@ -33,7 +33,7 @@ use crate::spectrum::ior::RefractiveIndex;
 use crate::spectrum::observer::spectrum_to_xyz;
 
 /// What a list of objects may cost at most; beyond, boxes are sorted into a hierarchy. In the same
-/// unit, a ball costs 1 and another shape [`OTHER`]. Measured on clouds of one cross-section over a floor
+/// unit, a ball costs 1 and another shape 5. Measured on clouds of one cross-section over a floor
 /// (AVX-512): a hierarchy takes as long as a list of about 85 balls, or of 20 objects of which two
 /// thirds are cubes and cylinders.
 pub const LARGEST_LIST: usize = 80;
@@ -297,6 +297,15 @@ impl<T: Scalar> Builder<T> {
         self.lights.push((light, power));
     }
 
+    /// About the area, over π, that parallel light falls on; planes alone have no size to tell.
+    fn lit_area(&self) -> f64 {
+        if self.reach > 0.0 {
+            self.reach * self.reach
+        } else {
+            1.0
+        }
+    }
+
     /// A light without a surface.
     fn free_light(&mut self, scene: &Scene, light: &Light) {
         let scalars = |v: DVec3| v.to_array().map(T::from_f64);
@@ -312,7 +321,7 @@ impl<T: Scalar> Builder<T> {
             } => (
                 LightShape::Directional(scalars(-*direction)),
                 irradiance,
-                std::f64::consts::PI * self.reach * self.reach * strength(irradiance),
+                std::f64::consts::PI * self.lit_area() * strength(irradiance),
             ),
         };
         if power > 0.0 {

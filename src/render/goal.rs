@@ -37,92 +37,180 @@ pub struct Chosen {
     pub short: bool,
 }
 
-/// Samples a pixel of the first pilot: enough for two replicates of a few points each.
+/// Samples a pixel of the smallest pilot: enough for two replicates of a few points each.
 const FIRST: u32 = 8;
-/// How much larger the next pilot is.
-const GROWTH: u32 = 4;
-/// Renders of a pilot. The largest of many estimated errors is too large by chance; with four
-/// renders a block's standard error has 4 × 64 degrees of freedom with two replicates, so its
-/// relative standard error is 1/√512, 4 %, and the largest of 10⁴ blocks about 4 of those too large.
-const RENDERS: u32 = 4;
-/// A pilot is large enough when the goal asks for no more than so many times its samples: then
-/// all pilots together take about two thirds of the picture's time.
-const NEAR: f64 = 8.0;
+/// Camera paths of the smallest pilot of a picture: what one path in ten thousand brings is seen by
+/// it but for one case in 700 (0.9999^65536), and it takes milliseconds.
+const PATHS: u32 = 1 << 16;
+/// Most relative standard error that a pilot's estimate of the squared error may have: the error
+/// itself is known to a tenth then. Rare, large contributions make it worse, and the pilot grows.
+const KNOWN: f64 = 0.2;
+/// How much larger the next pilot is at most.
+const GROWTH: f64 = 4.0;
+
+impl Target {
+    /// Samples a pixel of the first pilot. A block's share of [`PATHS`] would be too much; it has
+    /// 4096 paths in four renders.
+    fn first(self, pixels: usize) -> u32 {
+        match self {
+            Self::Image => FIRST.max(PATHS / pixels.clamp(1, PATHS as usize) as u32),
+            Self::Block => 2 * FIRST,
+        }
+    }
+
+    /// Renders of a pilot. A picture's mean has the degrees of freedom of all its pixels. Of blocks
+    /// the largest estimated error counts, which is too large by chance: with four renders of two
+    /// replicates a block's standard error has 4 × 64 degrees of freedom, so its relative standard
+    /// error is 1/√512, 4 %, and the largest of 10⁴ blocks may be four of those too large.
+    fn renders(self) -> u32 {
+        match self {
+            Self::Image => 1,
+            Self::Block => 4,
+        }
+    }
+
+    /// The picture's samples over those of the last pilot: near enough that the law between the
+    /// two hardly matters (scrambled nets have none between powers of two), and so that all
+    /// pilots together cost little more than the picture.
+    fn near(self) -> f64 {
+        match self {
+            Self::Image => 2.0,
+            Self::Block => 4.0,
+        }
+    }
+}
+
+/// A pilot will do that is so much smaller than it was meant to be.
+const SLACK: f64 = 1.5;
 /// Slopes of the standard error over samples: independent samples have −1/2, and no sampler here
 /// falls faster than −1 for long (smooth integrands, strata: Mitchell 1996).
 const SLOPES: [f64; 2] = [-1.0, -0.5];
 
-/// Standard error over mean, of what is aimed at: black blocks have none.
+/// Standard error over mean of what is aimed at; NaN where there is none.
 pub fn reached(rendered: &Rendered, target: Target) -> f64 {
-    errors(rendered, target)
-        .into_iter()
-        .map(f64::sqrt)
-        .fold(0.0, largest)
+    let squares = squares(rendered, target);
+    let worst = squares.into_iter().reduce(Squares::larger);
+    worst.map_or(0.0, |worst| worst.sum.sqrt())
 }
 
-/// Chooses the samples a pixel, at most `most`. `pilot` renders with this many samples a pixel and
-/// a seed that belongs to the number of the pilot; `None` where it was stopped.
+/// Chooses the samples a pixel of a picture of so many pixels, at most `most`. `pilot` renders with
+/// this many samples a pixel and a seed that belongs to the number of the pilot; `None` where it
+/// was stopped.
 pub fn choose(
     goal: Goal,
+    pixels: usize,
     most: u32,
     mut pilot: impl FnMut(u32, u32) -> Option<Rendered>,
 ) -> Option<Chosen> {
-    let (mut samples, mut spent, mut number) = (FIRST.min(most), 0, 0);
+    let target = goal.target;
+    let (mut samples, mut spent, mut number) = (target.first(pixels).min(most), 0, 0);
+    let near = target.near();
     let mut before: Option<(u32, f64)> = None;
     loop {
-        let mut sums: Vec<f64> = Vec::new();
-        for _ in 0..RENDERS {
-            let squares = errors(&pilot(samples, number)?, goal.target);
+        let mut sums: Vec<Squares> = Vec::new();
+        for _ in 0..target.renders() {
+            let squares = squares(&pilot(samples, number)?, target);
             number += 1;
             spent += u64::from(samples);
-            sums.resize(squares.len(), 0.0);
+            sums.resize(squares.len(), Squares::default());
             for (sum, square) in sums.iter_mut().zip(squares) {
-                *sum += square / f64::from(RENDERS);
+                sum.sum += square.sum;
+                sum.squares += square.squares;
             }
         }
-        let error = sums.into_iter().map(f64::sqrt).fold(0.0, largest);
-        let slope = before.map_or(SLOPES[1], |(fewer, larger)| {
-            let times = f64::from(samples) / f64::from(fewer);
-            let slope = libm::log(error / larger) / libm::log(times);
-            slope.clamp(SLOPES[0], SLOPES[1])
-        });
-        // Down to fewer samples than the pilot's, strata have gained less than above it.
-        let slope = if error < goal.error { SLOPES[1] } else { slope };
-        let times = libm::pow(goal.error / error, 1.0 / slope);
-        let wanted = f64::from(samples) * times;
-        // Two samples are the least that have a standard error.
-        let enough = (wanted.ceil().min(f64::from(most)) as u32).max(2.min(most));
-        if times <= NEAR || samples >= most / GROWTH {
+        let worst = sums.into_iter().reduce(Squares::larger).unwrap_or_default();
+        let error = (worst.sum / f64::from(target.renders())).sqrt();
+        let wanted = f64::from(samples) * times(goal.error, (samples, error), before);
+        let enough = wanted <= SLACK * near * f64::from(samples) && worst.relative_error() <= KNOWN;
+        if enough || samples == most || error.is_nan() {
+            // Two samples are the least that have a standard error.
+            let chosen = (wanted.ceil().min(f64::from(most)) as u32).max(2.min(most));
             return Some(Chosen {
-                samples: enough,
+                samples: chosen,
                 spent,
                 short: wanted > f64::from(most),
             });
         }
         before = Some((samples, error));
-        samples *= GROWTH;
+        let aimed = (wanted / near).max(2.0 * f64::from(samples));
+        let next = (GROWTH * f64::from(samples)).min(aimed).ceil();
+        samples = next.min(f64::from(most)) as u32;
     }
 }
 
-/// The larger number; what is no number counts as largest.
-fn largest(a: f64, b: f64) -> f64 {
-    if b.is_nan() { f64::INFINITY } else { a.max(b) }
+/// How many times the samples of a pilot the wanted error takes, by the law through the pilot
+/// before it.
+fn times(wanted: f64, (samples, error): (u32, f64), before: Option<(u32, f64)>) -> f64 {
+    let slope = before.map_or(SLOPES[1], |(fewer, larger)| {
+        let ratio = f64::from(samples) / f64::from(fewer);
+        let slope = libm::log(error / larger) / libm::log(ratio);
+        slope.clamp(SLOPES[0], SLOPES[1])
+    });
+    // Down to fewer samples than the pilot's, strata have gained less than above it.
+    let slope = if error < wanted { SLOPES[1] } else { slope };
+    libm::pow(wanted / error, 1.0 / slope)
+}
+
+/// The squared relative standard error of a mean over pixels: Σ of the pixels' own, and Σ of the
+/// squares of those, which says how well the sum is known.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Squares {
+    sum: f64,
+    squares: f64,
+}
+
+impl Squares {
+    /// Of the mean luminance of these pixels: black ones have no error.
+    fn of(pixels: impl Iterator<Item = (f64, f64)>) -> Self {
+        let (mut total, mut own) = (0.0, Self::default());
+        for (value, error) in pixels {
+            let square = error * error;
+            total += value;
+            own.sum += square;
+            own.squares += square * square;
+        }
+        if own.sum == 0.0 {
+            return Self::default();
+        }
+        let unit = total * total;
+        Self {
+            sum: own.sum / unit,
+            squares: own.squares / (unit * unit),
+        }
+    }
+
+    /// Relative standard error of the sum: its terms are independent, and the variance of each is
+    /// at most the expectation of its square.
+    fn relative_error(self) -> f64 {
+        if self.sum == 0.0 {
+            0.0
+        } else {
+            self.squares.sqrt() / self.sum
+        }
+    }
+
+    /// The larger one; what is no number counts as largest.
+    fn larger(self, other: Self) -> Self {
+        if self.sum >= other.sum || self.sum.is_nan() {
+            self
+        } else {
+            other
+        }
+    }
 }
 
 /// Squared relative standard errors: one of the picture, or one a block.
-fn errors(rendered: &Rendered, target: Target) -> Vec<f64> {
-    let relative = |value: f64, error: f64| {
-        let ratio = if error == 0.0 { 0.0 } else { error / value };
-        ratio * ratio
-    };
+fn squares(rendered: &Rendered, target: Target) -> Vec<Squares> {
+    let pixels = rendered.xyz();
+    let pixel = |i: usize| (pixels[i].mean[1], pixels[i].standard_error[1]);
     match target {
-        Target::Image => {
-            let mean = rendered.mean_luminance();
-            vec![relative(mean.value, mean.standard_error)]
+        Target::Image => vec![Squares::of((0..pixels.len()).map(pixel))],
+        Target::Block => {
+            let window = rendered.window;
+            blocks::members(window.width() as usize, window.height() as usize)
+                .into_iter()
+                .map(|block| Squares::of(block.into_iter().map(pixel)))
+                .collect()
         }
-        Target::Block => blocks::luminances(rendered)
-            .iter()
-            .map(|block| relative(block.value, block.standard_error))
-            .collect(),
     }
 }

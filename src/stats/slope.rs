@@ -42,46 +42,57 @@ struct Logarithm {
 }
 
 impl Slope {
-    /// Fits the means of replicates, each weighted by the inverse variance of its logarithm (to
-    /// first order the relative variance of the mean). Points whose mean is not above zero, or
-    /// with a single replicate, say nothing and are left out; `None` where fewer than two are left
-    /// or their replicates have no spread.
+    /// Fits the means of replicates. Points whose mean is not above zero, or with a single
+    /// replicate, say nothing and are left out; `None` where fewer than two are left or their
+    /// replicates have no spread.
     ///
-    /// The slope's variance is that of weighted least squares, 1/Σ w (ln x − mean)² (Bevington and
-    /// Robinson, *Data Reduction and Error Analysis*, 3rd ed., ch. 6), with the degrees of freedom
-    /// of all replicates together. Where the points are no line ([`Slope::straight`]), it is
-    /// scaled by χ²/(n − 2) and has n − 2 degrees of freedom.
+    /// The variance v of a point's logarithm is, to first order, the relative variance of its mean.
+    /// Weights 1/v from few replicates would favour the points whose replicates agree by accident
+    /// and be too sure of themselves; with 1/(v + v̄), v̄ the mean over the points, no point counts
+    /// for much more than its share, and one that is known badly counts for less. The slope is then
+    /// Σ c y with c from weighted least squares, its variance Σ c² v, with the degrees of freedom of
+    /// F. E. Satterthwaite (Biometrics Bulletin 2, 1946). Where the points are no line
+    /// ([`Slope::straight`]), the variance is scaled by χ²/(n − 2) and has n − 2 degrees of freedom.
     #[must_use]
     pub fn fit(points: &[Replicates]) -> Option<Self> {
         let points: Vec<Logarithm> = points.iter().filter_map(Logarithm::of).collect();
-        let count = points.len() as f64;
         if points.len() < 2 {
             return None;
         }
-        let weight = |p: &Logarithm| 1.0 / p.variance;
-        let sum = |f: &dyn Fn(&Logarithm) -> f64| points.iter().map(|p| weight(p) * f(p)).sum();
-        let weights: f64 = sum(&|_| 1.0);
-        let mean_x: f64 = sum(&|p| p.x) / weights;
-        let mean_y: f64 = sum(&|p| p.y) / weights;
-        let squares: f64 = sum(&|p| (p.x - mean_x) * (p.x - mean_x));
-        let value: f64 = sum(&|p| (p.x - mean_x) * (p.y - mean_y)) / squares;
-        let intercept = mean_y - value * mean_x;
-        let misses: f64 = sum(&|p| {
-            let miss = p.y - intercept - value * p.x;
-            miss * miss
-        });
-        let own_freedom: f64 = points.iter().map(|p| p.freedom).sum();
-        let excess = misses / (count - 2.0);
-        let straight = points.len() < 3 || excess <= tolerated(count - 2.0, own_freedom);
+        let line = Line::through(&points);
+        let parts = || {
+            points
+                .iter()
+                .zip(&line.shares)
+                .map(|(p, c)| c * c * p.variance)
+        };
+        let variance: f64 = parts().sum();
+        let squares: f64 = points
+            .iter()
+            .zip(parts())
+            .map(|(p, v)| v * v / p.freedom)
+            .sum();
+        let own_freedom = variance * variance / squares;
+        let beyond = points.len() as f64 - 2.0;
+        let misses = |p: &Logarithm| {
+            let miss = p.y - line.intercept - line.slope * p.x;
+            miss * miss / p.variance
+        };
+        let excess = points.iter().map(misses).sum::<f64>() / beyond;
+        let of_one = points
+            .iter()
+            .map(|p| p.freedom)
+            .fold(f64::INFINITY, f64::min);
+        let straight = beyond < 1.0 || excess <= tolerated(beyond, of_one);
         let (scale, freedom) = if straight {
             (1.0, own_freedom)
         } else {
-            (excess.max(1.0), count - 2.0)
+            (excess.max(1.0), beyond)
         };
-        let standard_error = (scale / squares).sqrt();
-        (value.is_finite() && standard_error.is_finite()).then_some(Self {
-            value,
-            intercept,
+        let standard_error = (scale * variance).sqrt();
+        (line.slope.is_finite() && standard_error.is_finite()).then_some(Self {
+            value: line.slope,
+            intercept: line.intercept,
             standard_error,
             freedom,
             straight,
@@ -114,6 +125,39 @@ impl Slope {
     }
 }
 
+/// A line by weighted least squares.
+struct Line {
+    slope: f64,
+    intercept: f64,
+    /// What each ordinate counts for in the slope.
+    shares: Vec<f64>,
+}
+
+impl Line {
+    fn through(points: &[Logarithm]) -> Self {
+        let usual = points.iter().map(|p| p.variance).sum::<f64>() / points.len() as f64;
+        let weights: Vec<f64> = points.iter().map(|p| 1.0 / (p.variance + usual)).collect();
+        let sum = |f: &dyn Fn(&Logarithm) -> f64| -> f64 {
+            points.iter().zip(&weights).map(|(p, w)| w * f(p)).sum()
+        };
+        let all = sum(&|_| 1.0);
+        let (mean_x, mean_y) = (sum(&|p| p.x) / all, sum(&|p| p.y) / all);
+        let squares = sum(&|p| (p.x - mean_x) * (p.x - mean_x));
+        let share = |(p, w): (&Logarithm, &f64)| w * (p.x - mean_x) / squares;
+        let shares: Vec<f64> = points.iter().zip(&weights).map(share).collect();
+        let slope = points
+            .iter()
+            .zip(&shares)
+            .map(|(p, c)| c * p.y)
+            .sum::<f64>();
+        Self {
+            slope,
+            intercept: mean_y - slope * mean_x,
+            shares,
+        }
+    }
+}
+
 impl Logarithm {
     fn of(point: &Replicates) -> Option<Self> {
         let count = point.values.len() as f64;
@@ -131,8 +175,9 @@ impl Logarithm {
     }
 }
 
-/// The mean square miss that points of a line stay below in 95 of 100 cases: Fisher's F.
-fn tolerated(freedom: f64, own_freedom: f64) -> f64 {
-    FisherSnedecor::new(freedom, own_freedom)
+/// The mean square miss that points of a line stay below in 95 of 100 cases: Fisher's F, with the
+/// degrees of freedom of one point, as each miss is measured by its own point's spread.
+fn tolerated(freedom: f64, of_one: f64) -> f64 {
+    FisherSnedecor::new(freedom, of_one)
         .map_or(f64::INFINITY, |fisher| fisher.inverse_cdf(1.0 - LEVEL))
 }

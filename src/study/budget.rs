@@ -13,7 +13,7 @@ use crate::film::pixels::{Estimate, Pixels};
 use crate::scene::SamplerKind;
 
 /// What a render costs.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Cost {
     /// Seconds for one sample in each pixel.
     pub sample: f64,

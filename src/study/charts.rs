@@ -125,12 +125,16 @@ pub fn estimated_over_actual(curves: &[Curve], abscissa: Key) -> Figure {
             .collect();
     });
     series.retain(|s| s.points.iter().any(|m| m.y > 0.0));
+    let levels = [0.5, 0.8, 0.9, 1.0, 1.1, 1.25, 2.0].map(|level| {
+        let name = if level == 1.0 { "honest" } else { "" };
+        (level, format!("{} {name}", Figure::number(level)))
+    });
     Figure {
         title: "Is the error bar honest? Estimated over actual error".to_owned(),
         x: name(abscissa).to_owned(),
         y: "estimated / actual root mean squared error".to_owned(),
         series,
-        levels: vec![(1.0, "honest".to_owned())],
+        levels: levels.to_vec(),
         notes: vec![
             "Above 1 the error bar is too long, below 1 too short.".to_owned(),
             "Samples that fall into a single scramble have no error bar and no point.".to_owned(),

@@ -182,6 +182,6 @@ pub fn own(subject: &Subject, points: &[Ready], samples: u32) -> Result<Ready, S
     if let (false, Some(depth)) = (unlimited, depths.flatten().max()) {
         overrides.set.push(image("max_depth", depth.to_string()));
     }
-    let name = format!("reference: {sampler}, precision and finder auto");
+    let name = format!("{sampler}, precision and finder auto");
     Ok(subject.ready(&overrides, name)?)
 }

@@ -177,7 +177,7 @@ impl Figure {
             let dashes = DashedLineSeries::new(line, 3, 5, GREY.into());
             chart.draw_series(dashes).map_err(failed)?;
             let style = (FONT, 14).into_font().color(&GREY);
-            let name = EmptyElement::at(end) + Text::new(guide.label.clone(), (-34, -16), style);
+            let name = EmptyElement::at(end) + Text::new(guide.label.clone(), (-30, -22), style);
             chart.draw_series([name]).map_err(failed)?;
         }
         for (level, name) in &self.levels {
@@ -206,7 +206,7 @@ impl Figure {
             let element = Text::new(text.to_owned(), (74, y), style);
             area.draw(&element).map_err(failed)?;
             y += LINE as i32;
-            Ok::<i32, FigureError>(y - LINE as i32 + 9)
+            Ok::<i32, FigureError>(y - LINE as i32 + 7)
         };
         for series in &self.series {
             let at = line(&series.label, (FONT, 16).into_font().color(&BLACK))?;

@@ -1,7 +1,7 @@
 //! Comparisons: of pictures with pictures and with truths, and of methods with each other.
 //!
 //! A study ([`run`]) renders every point of a [`grid`] of choices several times with independent
-//! seeds, compares each render with a [`reference`], and keeps one [`row`] of each in a
+//! seeds, compares each render with a [`mod@reference`], and keeps one [`row`] of each in a
 //! [`journal`]; [`budget`] sees to it that this fits into the time there is.
 
 pub mod agreement;
@@ -9,6 +9,7 @@ pub mod axis;
 pub mod budget;
 pub mod charts;
 pub mod choice;
+pub mod clock;
 pub mod compare;
 pub mod coverage;
 pub mod failures;
@@ -27,6 +28,7 @@ pub mod run;
 pub mod seeds;
 pub mod subject;
 pub mod summary;
+pub mod work;
 
 use std::path::PathBuf;
 

@@ -144,9 +144,8 @@ impl Reference {
     pub fn read(path: &Path, subject: Subject<'_>) -> Result<Self, ReferenceError> {
         let picture = exr::read(path)?;
         let size = subject.scene.image.size.map(|n| n as usize);
-        let reference = Self::of_picture(path, &picture, size)?;
         check_subject(path, &picture, subject)?;
-        Ok(reference)
+        Self::of_picture(path, &picture, size)
     }
 
     /// The reference in a picture of this size.

@@ -10,8 +10,9 @@ use image::{ExtendedColorType, ImageEncoder as _};
 use super::figure::Figure;
 use super::reference::Reference;
 use super::row::Row;
-use super::run::{Request, Study, picture_name};
-use super::summary::{Curve, Mean, Point};
+use super::run::{Request, Study};
+use super::summary::{Curve, Mean, Point, best};
+use super::work::picture_name;
 use crate::film::{exr, png};
 use crate::stats::metrics::{RELMSE_EPSILON, mean};
 
@@ -76,12 +77,7 @@ fn summary(study: &Study, curves: &[Curve]) -> String {
         text.push_str("<p><strong>Interrupted: not all points are there yet.</strong></p>\n");
     }
     let reference = &study.reference;
-    let best = curves
-        .iter()
-        .flat_map(|curve| &curve.points)
-        .map(|point| point.rmse().value)
-        .filter(|error| *error > 0.0)
-        .fold(f64::INFINITY, f64::min);
+    let best = best(curves);
     let own = reference.rmse();
     let known = if own > 0.0 {
         format!(

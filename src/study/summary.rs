@@ -193,6 +193,15 @@ fn said(key: Key, value: &str) -> String {
     }
 }
 
+/// The least root mean squared error of all points that have one.
+pub fn best(curves: &[Curve]) -> f64 {
+    let points = curves.iter().flat_map(|curve| &curve.points);
+    points
+        .map(|point| point.rmse().value)
+        .filter(|error| *error > 0.0)
+        .fold(f64::INFINITY, f64::min)
+}
+
 /// The points that no other beats in both time and error: (curve, point), by rising seconds.
 pub fn front(curves: &[Curve]) -> Vec<(usize, usize)> {
     let mut all: Vec<(f64, f64, usize, usize)> = Vec::new();

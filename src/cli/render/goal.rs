@@ -38,25 +38,30 @@ pub fn aim(
     let mut watch = Watch::new(job, None, !arguments.quiet);
     let base = job.scene.image.seed;
     let strata = job.scene.image.sampler == SamplerKind::Stratified;
-    let chosen = choose(goal, MOST_SAMPLES, |samples, number| {
-        job.scene.image.spp = samples;
-        // Strata are cut for a number of samples.
-        if strata {
-            match Plan::new(&job.scene, arguments.plan.is_full()) {
-                Ok(plan) => job.plan = plan,
-                Err(error) => failed = Some(error),
+    let chosen = choose(
+        goal,
+        job.window.pixels(),
+        MOST_SAMPLES,
+        |samples, number| {
+            job.scene.image.spp = samples;
+            // Strata are cut for a number of samples.
+            if strata {
+                match Plan::new(&job.scene, arguments.plan.is_full()) {
+                    Ok(plan) => job.plan = plan,
+                    Err(error) => failed = Some(error),
+                }
             }
-        }
-        job.plan.reseed(seed(base, "pilot", number));
-        let request = Request {
-            window: job.window,
-            samples,
-            time: None,
-            instructions,
-        };
-        let rendered = render(&job.plan, &request, &mut watch);
-        (rendered.samples == samples && failed.is_none()).then_some(rendered)
-    });
+            job.plan.reseed(seed(base, "pilot", number));
+            let request = Request {
+                window: job.window,
+                samples,
+                time: None,
+                instructions,
+            };
+            let rendered = render(&job.plan, &request, &mut watch);
+            (rendered.samples == samples && failed.is_none()).then_some(rendered)
+        },
+    );
     watch.finish();
     if let Some(error) = failed {
         return Err(error.into());
