@@ -168,7 +168,7 @@ def white_point():
     observer = picture({"sky": flat()}, spp=4096, sampler="multijitter", film=film)[..., 1].mean()
     observer /= mitsuba_scene.ETALON_Y_INTEGRAL
     ratio = mitsuba_scene.ETALON_Y_INTEGRAL / mitsuba_scene.MITSUBA_Y_INTEGRAL
-    return f"`hdrfilm` Y = {standard:.5f} ({ratio:.5f} expected of its constant), `specfilm` with the 1 nm table {observer:.5f}"
+    return f"`hdrfilm` {standard:.5f} ({ratio:.5f} follows from its constant), `specfilm`, 1 nm table {observer:.5f}"
 
 
 @finding
