@@ -27,6 +27,7 @@ from pathlib import Path
 
 import mitsuba as mi
 import numpy as np
+import OpenEXR
 
 import implicit_mesh
 import scene_file
@@ -468,11 +469,12 @@ def main():
         sys.exit(f"error: {arguments.scene}: {error}")
     xyz = render(scene, arguments.seed)
     print("mean XYZ", *xyz.mean(axis=(0, 1)))
-    bitmap = mi.Bitmap(to_rgb(xyz).astype(np.float32), mi.Bitmap.PixelFormat.RGB)
+    rgb = to_rgb(xyz).astype(np.float32)
     if arguments.exr:
-        bitmap.write(str(arguments.exr))
+        # Mitsuba's own writer waits for ever where there is only one thread.
+        OpenEXR.File({"compression": OpenEXR.ZIP_COMPRESSION}, {"RGB": rgb}).write(str(arguments.exr))
     if arguments.png:
-        mi.util.write_bitmap(str(arguments.png), bitmap)
+        mi.util.write_bitmap(str(arguments.png), mi.Bitmap(rgb, mi.Bitmap.PixelFormat.RGB))
 
 
 if __name__ == "__main__":
