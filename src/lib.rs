@@ -14,4 +14,5 @@ pub mod sample;
 pub mod scene;
 pub mod shape;
 pub mod spectrum;
+pub mod stats;
 pub mod study;

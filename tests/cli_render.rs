@@ -471,3 +471,49 @@ mod interrupts {
         assert_eq!(studio.files(), before);
     }
 }
+
+/// Over independent pictures the variance of a bin is what the standard errors say it is.
+#[test]
+fn error_bars_of_bins_are_the_spread_over_seeds() {
+    let studio = Studio::new(
+        "environment = 1\n[camera]\nfrom = [0, 0, 1]\nto = [0, 0, 0]\nfov = 40\n\
+         [image]\nsize = [16, 16]\nspp = 32\nsampler = \"independent\"\n",
+    );
+    let (name, error) = ("S0.550,000000nm", "standard_error.S0.550,000000nm");
+    let layers = ["--layers", "spectral:550-550:20"];
+    let seeds: Vec<Vec<f64>> = (0..16)
+        .map(|seed| {
+            let seed = seed.to_string();
+            let arguments = [&layers[..], &["--replicates", "8", "--seed", &seed]].concat();
+            let picture = studio.render(&arguments).0;
+            let wide = |channel: &str| {
+                picture
+                    .floats(channel)
+                    .unwrap()
+                    .iter()
+                    .map(|&v| f64::from(v))
+            };
+            wide(name).chain(wide(error)).collect()
+        })
+        .collect();
+    let (mut reported, mut spread) = (0.0, 0.0);
+    let n = seeds.len() as f64;
+    for pixel in 0..256 {
+        let mean = seeds.iter().map(|values| values[pixel]).sum::<f64>() / n;
+        let squares = seeds.iter().map(|values| (values[pixel] - mean).powi(2));
+        spread += squares.sum::<f64>() / (n - 1.0);
+        reported += seeds
+            .iter()
+            .map(|values| values[256 + pixel].powi(2))
+            .sum::<f64>()
+            / n;
+    }
+    // Both are χ² sums: 256 × 15 degrees of freedom, and 256 × 16 × 7. The ratio's spread is
+    // √(2/3840 + 2/28672) = 0.0243 for normal values; five of them are 1 in 1.7 × 10⁶ seeds.
+    let ratio = reported / spread;
+    assert!((ratio - 1.0).abs() < 5.0 * 0.0243, "{ratio}");
+    let picture = studio
+        .render(&[&layers[..], &["--replicates", "1"]].concat())
+        .0;
+    assert!(picture.channel(error).is_none() && picture.channel(name).is_some());
+}

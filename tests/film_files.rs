@@ -180,6 +180,7 @@ fn spectral_layout_follows_the_paper() {
         nm,
         sensitivity,
         values: vec![nm as f32, 0.5],
+        standard_errors: vec![0.25, 0.125],
     };
     picture.push_spectral(vec![
         bin(387.5, vec![(380.0, 0.5), (390.25, 0.6)]),
@@ -203,6 +204,10 @@ fn spectral_layout_follows_the_paper() {
     assert_eq!(
         read.floats("S0.550,000000nm"),
         Some([550.0, 0.5].as_slice())
+    );
+    assert_eq!(
+        read.floats("standard_error.S0.550,000000nm"),
+        Some([0.25, 0.125].as_slice())
     );
 }
 

@@ -13,40 +13,13 @@ use etalon::root::Outcome;
 use etalon::root::interval::{Enclosed, PIECES, Pieces, first_zero};
 use etalon::shape::Ray;
 use etalon::shape::implicit::enclosed::{EnclosedField, Method, Searching};
-use etalon::shape::implicit::expression::{Expression, Parameter, parse, rational};
+use etalon::shape::implicit::expression::parse;
 use etalon::shape::implicit::over_box::over_box;
 use etalon::shape::ladder::{Ladder, ScaledRay};
+use etalon::study::finders::OracleShape;
 use glam::DVec3;
 
-struct Shape {
-    half: f64,
-    expression: Expression,
-}
-
-fn shapes() -> HashMap<String, Shape> {
-    let lines = include_str!("data/implicit_shapes.csv").lines().skip(1);
-    lines
-        .map(|line| {
-            let fields: Vec<&str> = line.split(';').collect();
-            let mut parts = fields[3].split(", ");
-            let text = parts.next().unwrap();
-            let parameters: Vec<Parameter> = parts
-                .map(|part| {
-                    let (name, value) = part.split_once('=').unwrap();
-                    Parameter {
-                        name: name.to_owned(),
-                        value: rational(value).unwrap(),
-                    }
-                })
-                .collect();
-            let shape = Shape {
-                half: fields[1].parse().unwrap(),
-                expression: parse(text, &parameters).unwrap(),
-            };
-            (fields[0].to_owned(), shape)
-        })
-        .collect()
-}
+use crate::oracle_support::{self, IMPLICIT, number, shapes, vector};
 
 /// A row of the oracle: a ray, and its first root with multiplicity.
 struct Row {
@@ -58,23 +31,17 @@ struct Row {
 }
 
 fn rows() -> Vec<Row> {
-    let lines = include_str!("data/implicit_rays.csv").lines().skip(1);
-    lines
-        .map(|line| {
-            let f: Vec<&str> = line.split(',').collect();
-            let n: Vec<f64> = f[4..11].iter().map(|x| x.parse().unwrap()).collect();
-            Row {
-                id: f[0].to_owned(),
-                shape: f[1].to_owned(),
-                ray: Ray {
-                    origin: DVec3::new(n[0], n[1], n[2]),
-                    direction: DVec3::new(n[3], n[4], n[5]),
-                },
-                t_min: n[6],
-                first: (f[11] == "1").then(|| (f[12].parse().unwrap(), f[13].parse().unwrap())),
-            }
-        })
-        .collect()
+    let row = |row: &oracle_support::Row| Row {
+        id: row["id"].clone(),
+        shape: row["shape"].clone(),
+        ray: Ray {
+            origin: vector(row, ["ox", "oy", "oz"]),
+            direction: vector(row, ["dx", "dy", "dz"]),
+        },
+        t_min: number(row, "tmin"),
+        first: (row["hit"] == "1").then(|| (number(row, "t"), row["mult"].parse().unwrap())),
+    };
+    oracle_support::rows(IMPLICIT).iter().map(row).collect()
 }
 
 /// Outcome with t in units of the ray's direction.
@@ -97,7 +64,8 @@ fn first_hit(field: &EnclosedField, half: f64, row: &Row, searching: &Searching)
 /// Runs all oracle rays; returns how many stay undecided. Found must hold the true t, which is
 /// given with 22 digits, and know its multiplicity or say that it does not.
 fn undecided(rows: &[Row], method: Method, bound: u32) -> usize {
-    let shapes = shapes();
+    let shapes = shapes().into_iter();
+    let shapes: HashMap<String, OracleShape> = shapes.map(|s| (s.name.clone(), s)).collect();
     let ready: HashMap<&String, (EnclosedField, Searching)> = shapes
         .iter()
         .map(|(name, shape)| {
@@ -106,16 +74,13 @@ fn undecided(rows: &[Row], method: Method, bound: u32) -> usize {
                 bound,
                 leaving: None,
             };
-            (
-                name,
-                (EnclosedField::new(&shape.expression.tape), searching),
-            )
+            (name, (EnclosedField::new(&shape.field.tape), searching))
         })
         .collect();
     let mut undecided = 0;
     for row in rows {
         let (field, searching) = &ready[&row.shape];
-        match first_hit(field, shapes[&row.shape].half, row, searching) {
+        match first_hit(field, shapes[&row.shape].half_width, row, searching) {
             Outcome::Undecided => undecided += 1,
             Outcome::Absent => assert!(row.first.is_none(), "{}: not absent", row.id),
             Outcome::Found(root) => {

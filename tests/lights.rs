@@ -8,7 +8,9 @@
 
 use std::f64::consts::PI;
 
-use etalon::light::{CubeLight, LightShape, PlanarLight, RectangleLight, SphereLight};
+use etalon::light::{
+    CubeLight, CylinderLight, LightShape, PlanarLight, RectangleLight, SphereLight,
+};
 use etalon::math::lanes::{Lanes, Mask, Scalar};
 use etalon::math::vec3::Vec3;
 use glam::DVec3;
@@ -16,8 +18,9 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::{Job, PRECISIONS, Precision, best, on_each, same_bits};
-use crate::statistics_support::{chi_square, sidak, t_test};
+use crate::statistics_support::{chi_square, t_test};
 use crate::truth_file::truth;
+use etalon::stats::family::sidak;
 
 /// Level of all random tests of this module together.
 const FAMILY: f64 = 1e-4;
@@ -29,6 +32,7 @@ enum Light {
     Disk { centre: DVec3, half: [DVec3; 2] },
     Sphere { centre: DVec3, radius: f64 },
     Cube { centre: DVec3, half: [DVec3; 3] },
+    Cylinder { centre: DVec3, half: [DVec3; 3] },
     Point(DVec3),
 }
 
@@ -53,6 +57,10 @@ impl Light {
             }
             Self::Cube { centre, half } => {
                 LightShape::Cube(CubeLight::new(centre, half, cube_normals(half), both))
+            }
+            Self::Cylinder { centre, half } => {
+                let [a, b, c] = half;
+                LightShape::Cylinder(CylinderLight::new(centre, [a, b], c, both))
             }
             Self::Point(at) => LightShape::Point(at.to_array().map(T::from_f64)),
         }
@@ -114,6 +122,33 @@ impl Light {
                 } else {
                     Some((far, left))
                 }
+            }
+            Self::Cylinder { centre, half } => {
+                let [a, b, c] = half;
+                let (radius, height) = (a.length(), c.length());
+                let local =
+                    |v: DVec3| DVec3::new(v.dot(a) / radius, v.dot(b) / radius, v.dot(c) / height);
+                let (o, d) = (local(p - centre), local(direction));
+                let (square, linear) = (d.x * d.x + d.y * d.y, o.x * d.x + o.y * d.y);
+                let rest = linear * linear - square * (o.x * o.x + o.y * o.y - radius * radius);
+                let side = [-1.0, 1.0].map(|sign| (-linear + sign * rest.sqrt()) / square);
+                let caps = [-1.0, 1.0].map(|sign| (sign * height * d.z.signum() - o.z) / d.z);
+                let (near, far) = (side[0].max(caps[0]), side[1].min(caps[1]));
+                if rest < 0.0 || near > far || far <= 0.0 {
+                    return None;
+                }
+                let (t, by_cap) = if near > 0.0 {
+                    (near, caps[0] > side[0])
+                } else {
+                    (far, caps[1] < side[1])
+                };
+                let at = o + t * d;
+                let normal = if by_cap {
+                    c * (at.z.signum() / height)
+                } else {
+                    (a * at.x + b * at.y) / (radius * radius)
+                };
+                Some((t, normal))
             }
             Self::Point(_) => None,
         }
@@ -226,6 +261,17 @@ impl Light {
                 }
                 best
             }
+            Self::Cylinder { centre, half } => {
+                let [a, b, c] = half;
+                let v = at - centre;
+                let (x, y) = (v.dot(a) / a.length_squared(), v.dot(b) / b.length_squared());
+                let z = v.dot(c) / c.length_squared();
+                if x.hypot(y) > z.abs() {
+                    (x * a + y * b).normalize()
+                } else {
+                    c.normalize() * z.signum()
+                }
+            }
             Self::Point(at) => at,
         }
     }
@@ -283,6 +329,19 @@ fn settings() -> Vec<(Light, Vec<DVec3>)> {
         at(0.3, -0.2, 0.6),
         at(0.0, 0.0, 0.98),
     ];
+    let long = 0.6 * normal.cross(half[0]).normalize();
+    let round = [0.4 * half[0].normalize(), 0.4 * normal, long];
+    let about = |x: f64, y: f64, z: f64| centre + x * round[0] + y * round[1] + z * round[2];
+    let cylinder = vec![
+        // Seen: the side, a cap, both; from far; grazing a cap; from inside, and on the axis.
+        about(2.0, 1.0, 0.3),
+        about(0.3, -0.2, -2.5),
+        about(-1.5, 2.0, 1.8),
+        about(30.0, -50.0, 40.0),
+        about(2.5, 0.3, 1.01),
+        about(0.4, 0.5, -0.6),
+        about(0.0, 0.0, 0.9),
+    ];
     vec![
         (
             Light::Rectangle {
@@ -300,6 +359,13 @@ fn settings() -> Vec<(Light, Vec<DVec3>)> {
                 half: sides,
             },
             cube,
+        ),
+        (
+            Light::Cylinder {
+                centre,
+                half: round,
+            },
+            cylinder,
         ),
     ]
 }
@@ -558,9 +624,12 @@ fn tame() -> Vec<(Light, DVec3)> {
         .into_iter()
         .flat_map(|(light, receivers)| {
             receivers.into_iter().enumerate().filter_map(move |(i, p)| {
-                let flat = !matches!(light, Light::Sphere { .. } | Light::Cube { .. });
-                let rough =
-                    flat && (2..=4).contains(&i) || matches!(light, Light::Cube { .. }) && i == 4;
+                let grazing = match light {
+                    Light::Sphere { .. } => 0..0,
+                    Light::Cube { .. } | Light::Cylinder { .. } => 4..5,
+                    _ => 2..5,
+                };
+                let rough = grazing.contains(&i);
                 (!rough).then_some((light, p))
             })
         })
@@ -797,6 +866,21 @@ fn closed_forms() -> Vec<(String, Light, (DVec3, DVec3), f64)> {
         half,
     };
     all.push(("inside a cube".into(), cube, (DVec3::ZERO, DVec3::Z), PI));
+    let half = [DVec3::X, DVec3::Y, 1.5 * DVec3::Z];
+    let cylinder = |centre: DVec3| Light::Cylinder { centre, half };
+    all.push((
+        "inside a cylinder".into(),
+        cylinder(DVec3::new(0.2, 0.1, 0.3)),
+        (DVec3::ZERO, DVec3::new(0.6, 0.0, 0.8)),
+        PI,
+    ));
+    // A receiver on the axis sees the near cap alone, a disk: π sin² of its half-angle.
+    all.push((
+        "on the axis of a cylinder".into(),
+        cylinder(DVec3::new(0.0, 0.0, 3.5)),
+        (DVec3::ZERO, DVec3::Z),
+        PI / 5.0,
+    ));
     all
 }
 

@@ -12,24 +12,8 @@ use std::collections::HashMap;
 
 use etalon::math::affine::Affine;
 use etalon::shape::{Placed, Ray, ShapeKind, Start, Tally};
-use glam::DVec3;
 
-type Row = HashMap<String, String>;
-
-fn rows(text: &str) -> Vec<Row> {
-    let mut reader = csv::ReaderBuilder::new()
-        .flexible(true)
-        .from_reader(text.as_bytes());
-    reader.deserialize().map(Result::unwrap).collect()
-}
-
-fn number(row: &Row, name: &str) -> f64 {
-    row[name].parse().unwrap()
-}
-
-fn vector(row: &Row, names: [&str; 3]) -> DVec3 {
-    DVec3::from_array(names.map(|name| number(row, name)))
-}
+use crate::oracle_support::{number, rows, vector};
 
 fn kind(name: &str) -> ShapeKind {
     match name {

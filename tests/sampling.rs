@@ -19,11 +19,12 @@ use etalon::sample::warp::{
     cosine_hemisphere, cosine_hemisphere_pdf, square_to_disk, uniform_sphere,
 };
 use etalon::scene::SamplerKind;
+use etalon::stats::family::sidak;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::{Job, Kernel, PRECISIONS, Precision, best, map, on_each};
-use crate::statistics_support::{chi_square, moments, normal_p, sidak, t_test, variance_p};
+use crate::statistics_support::{chi_square, moments, normal_p, t_test, variance_p};
 use crate::truth_file::{list, number, truth};
 
 /// Level of all random tests of this module together.
@@ -37,7 +38,7 @@ fn level() -> f64 {
 
 /// Which numbers to ask for.
 #[derive(Debug, Clone, Copy)]
-enum What {
+pub enum What {
     Camera,
     Pair(Slot, u32),
     Single(Slot, u32),
@@ -120,12 +121,12 @@ const WHATS: [What; 5] = [
     What::Single(Slot::Roulette, 6),
 ];
 
-fn sequence(kind: SamplerKind, seed: u64, spp: u32) -> Sequence {
+pub fn sequence(kind: SamplerKind, seed: u64, spp: u32) -> Sequence {
     Sequence::new(kind, seed, spp, Replicates::Fixed(1))
 }
 
 /// All samples 0 … n − 1 of `pixels` pixels, pixel by pixel.
-fn pixels_of(
+pub fn pixels_of(
     precision: Precision,
     sequence: Sequence,
     what: What,

@@ -1,13 +1,7 @@
 //! Tests of hypotheses with stated levels.
 
-use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
-
-/// The level of each of `count` independent tests when the whole family may raise a false alarm
-/// with probability `family` (Šidák 1967).
-pub fn sidak(family: f64, count: usize) -> f64 {
-    // 1 − (1 − family)^(1/count)
-    -libm::expm1(libm::log1p(-family) / count as f64)
-}
+use etalon::stats::{Estimate, student};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// p-value of Pearson's χ² of counts against expected counts. Neighbouring bins are joined until
 /// at least 10 are expected in each; what is expected nowhere but counted gives 0.
@@ -51,17 +45,12 @@ pub fn chi_square_tail(freedom: f64, x: f64) -> f64 {
 
 /// Two-sided p-value of a standard normal variable.
 pub fn normal_p(z: f64) -> f64 {
-    2.0 * Normal::standard().sf(z.abs())
+    student::two_sided(z, f64::INFINITY)
 }
 
 /// Two-sided p-value of the mean of `values` against `truth`, Student's t.
 pub fn t_test(values: &[f64], truth: f64) -> f64 {
-    let n = values.len() as f64;
-    let (mean, variance) = moments(values);
-    let Ok(distribution) = StudentsT::new(0.0, 1.0, n - 1.0) else {
-        return f64::NAN;
-    };
-    2.0 * distribution.sf((mean - truth).abs() / (variance / n).sqrt())
+    Estimate::mean(values).p_value(truth, 0.0)
 }
 
 /// Mean and unbiased variance.

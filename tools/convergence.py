@@ -40,10 +40,11 @@ def relmse(picture, replicates, weights):
 def pictures(path, image, spp, arguments, folder):
     """Pictures (XYZ) by label and seed, whose seeds the reference does not have."""
     output = folder / "picture.exr"
-    for seed in range(1, PICTURES + 1):
-        options = image | {"spp": spp, "seed": seed, "sampler": "sobol", "replicates": 1}
-        etalon.render(path, output, arguments, **options)
-        yield "etalon sobol", etalon.read_xyz(output)
+    for label, undivided in {"etalon sobol": {"replicates": 1}, "etalon sobol, usual replicates": {}}.items():
+        for seed in range(1, PICTURES + 1):
+            options = image | {"spp": spp, "seed": seed, "sampler": "sobol"} | undivided
+            etalon.render(path, output, arguments, **options)
+            yield label, etalon.read_xyz(output)
     for sampler in ("multijitter", "independent"):
         scene = mitsuba_scene.load(path, image=image | {"spp": spp}, sampler=sampler)
         for seed in range(1, PICTURES + 1):

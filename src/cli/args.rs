@@ -5,8 +5,14 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use etalon::scene::Overrides;
+use etalon::study::axis::Axis;
+use etalon::study::charts::USUAL_ERROR;
+use etalon::study::choice::Choice;
 
-use super::values::{Crop, Instructions, Layer, Panels, Pixel, PlanChoice, Seconds, Size, setting};
+use super::values::{
+    Crop, GoalTarget, Instructions, Layer, Panels, Pixel, PlanChoice, Seconds, Size, finite,
+    setting, share,
+};
 
 /// A physically based spectral renderer, and the instrument that proves its pictures right.
 #[derive(Debug, Parser)]
@@ -34,8 +40,16 @@ pub enum Command {
     Trace(Trace),
     /// Follow one camera path of a rendering and print each of its steps.
     Replay(Replay),
+    /// Compare a picture with another or with a number: metrics, and whether noise explains it.
+    Compare(Compare),
     /// Compare the root finders of implicit surfaces over rays whose first hits are known.
     Finders(Finders),
+    /// Measure how a scene's error falls with samples and seconds, for a grid of choices.
+    Study(Box<Study>),
+    /// Count how often the 95 % intervals of blocks of pixels hold what they should.
+    Coverage(Coverage),
+    /// Lay the tables of several studies, other programs' included, into one chart.
+    Chart(Chart),
 }
 
 /// The scene and what is changed in it.
@@ -81,7 +95,8 @@ Examples:
   etalon render scenes/spheres.toml
   etalon render scenes/spheres.toml -o small.exr --size 200x150 --spp 64
   etalon render scenes/spheres.toml --panel all --layers depth,normal,spectral:400-700:10
-  etalon render scenes/spheres.toml --time 60 --set materials.glass.glass=N-SF11")]
+  etalon render scenes/spheres.toml --time 60 --set materials.glass.glass=N-SF11
+  etalon render scenes/spheres.toml --target-error 0.02 --target block")]
 pub struct Render {
     /// The scene.
     #[command(flatten)]
@@ -98,6 +113,19 @@ pub struct Render {
     /// Stop after this time, between passes.
     #[arg(long, value_name = "SECONDS")]
     pub time: Option<Seconds>,
+    /// Take as many samples as this standard error over mean needs: pilots with seeds of their own
+    /// choose the number and are thrown away, so that the choice does not bend the picture.
+    #[arg(long, value_name = "SHARE", conflicts_with = "spp", value_parser = share)]
+    pub target_error: Option<f64>,
+    /// What --target-error is the error of: the mean luminance of the whole image, or of its worst
+    /// block of 8x8 pixels.
+    #[arg(
+        long,
+        value_name = "image|block",
+        requires = "target_error",
+        default_value = "image"
+    )]
+    pub target: GoalTarget,
     /// Render this part of the picture only: pixels from X0,Y0 up to but not including X1,Y1.
     #[arg(long, value_name = "X0,Y0,X1,Y1")]
     pub crop: Option<Crop>,
@@ -272,6 +300,38 @@ impl Replay {
     }
 }
 
+/// Arguments of `etalon compare`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+B is the reference: its mean is what relative errors are relative to. Where both pictures know the \
+variances of their pixels, a verdict follows: image means, blocks of pixels and the distribution of \
+all blocks are tested at a family-wise level of 1e-3, and the smallest bias that would have been \
+caught is printed.
+
+Exit codes: 0 consistent, 1 not, 2 could not compare (other size, other scene, no common channel, \
+values that are not numbers, no variances).
+
+Examples:
+  etalon compare picture.exr reference/cornell_box.exr --heatmap difference.png
+  etalon compare furnace.exr --truth 2 --json")]
+pub struct Compare {
+    /// The picture.
+    #[arg(value_name = "A.exr")]
+    pub a: PathBuf,
+    /// The picture it is compared with.
+    #[arg(value_name = "B.exr", required_unless_present = "truth")]
+    pub b: Option<PathBuf>,
+    /// Compare the mean of each channel with this number instead.
+    #[arg(long, value_name = "VALUE", conflicts_with = "b", allow_negative_numbers = true, value_parser = finite)]
+    pub truth: Option<f64>,
+    /// Print everything as JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Paint where they differ: red where A is too bright, blue where it is too dark.
+    #[arg(long, value_name = "OUT.png", conflicts_with = "truth")]
+    pub heatmap: Option<PathBuf>,
+}
+
 /// Arguments of `etalon finders`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -300,10 +360,133 @@ pub struct Finders {
     /// Paint the pixels of this surface instead.
     #[arg(long, value_name = "SURFACE")]
     pub map: Option<String>,
+    /// Map where each method fails instead: all shapes and precisions over families of rays that grow
+    /// harder.
+    #[arg(long, conflicts_with_all = ["map", "rays", "shapes"])]
+    pub failures: bool,
+    /// Rays a shape, family and difficulty of the failure maps.
+    #[arg(long, value_name = "RAYS", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub count: u32,
     /// Width and height of each map in pixels.
     #[arg(long, value_name = "PIXELS", default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub size: u32,
     /// Say nothing on stderr but errors.
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+/// Arguments of `etalon study`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Each point of the grid is rendered --replicates times with independent seeds and compared with the \
+reference. The directory then holds study.csv with one row a render (its columns are explained in \
+scenes/README.md), the charts error, speed and honesty as SVG and PNG, and report.html, which needs \
+no other file. The same command goes on with a study that was interrupted.
+
+Axes: spp, max_depth, wavelengths, scrambles (numbers: lists such as 4,8 and ranges such as \
+1..4096x2), sampler, precision, finder (names). Without an axis that is a number, samples 1, 2, 4 … \
+are planned from a pilot to fit into --budget; without any axis, over the samplers.
+
+Examples:
+  etalon study scenes/cornell_box.toml
+  etalon study scenes/fig8_lens.toml --over spp=1..1024x4 --over sampler=sobol,stratified
+  etalon study scenes/fig7_mirrors.toml --over max_depth=1..64x2 --set image.spp=256")]
+pub struct Study {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The panel (named variant) to study.
+    #[arg(long, value_name = "NAME")]
+    pub panel: Option<String>,
+    /// Go over the values of this choice; may be given for several.
+    #[arg(long, value_name = "KEY=VALUES")]
+    pub over: Vec<Axis>,
+    /// Independent renders of each point, at least 2.
+    #[arg(long, value_name = "N", default_value_t = 16)]
+    pub replicates: u32,
+    /// What to compare with: a picture with its variance, a radiance or linear R,G,B that all pixels
+    /// are known to have, or auto: a committed reference, the truth that the scene names, or one
+    /// rendered for the purpose.
+    #[arg(long, value_name = "FILE.exr|TRUTH|auto", default_value = "auto")]
+    pub reference: Choice,
+    /// Refuse what would take longer than this, the reference included.
+    #[arg(long, value_name = "SECONDS", default_value = "150")]
+    pub budget: Seconds,
+    /// Seed of all randomness.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub seed: Option<String>,
+    /// The directory to write to; by default the scene's name, with the panel's, ending in -study.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Threads to work with; by default one for each of the machine's.
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+    /// Instruction set; the pictures' bits are the same with each.
+    #[arg(long, value_enum, default_value_t)]
+    pub instructions: Instructions,
+    /// Say nothing on stderr but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// Arguments of `etalon chart`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+The columns are explained in scenes/README.md; other programs can write them.
+
+Example:
+  etalon chart cornell_box-study/study.csv mitsuba.csv -o cornell_box")]
+pub struct Chart {
+    /// Tables of studies.
+    #[arg(value_name = "FILE.csv", required = true)]
+    pub tables: Vec<PathBuf>,
+    /// The chart to write, as SVG and PNG.
+    #[arg(short, long, value_name = "OUT", default_value = "chart")]
+    pub output: PathBuf,
+    /// The relative mean squared error at which the programs' times are compared.
+    #[arg(long, value_name = "RELMSE", default_value_t = USUAL_ERROR)]
+    pub at: f64,
+}
+
+/// Arguments of `etalon coverage`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Each scene is surveyed by independent samples, 16 times as many as are tested, and then rendered \
+several times with each sampler; a block counts where its 95 % interval, widened by the survey's own \
+error, holds the survey's mean. Blocks with fewer than 24 contributing samples are counted apart: from \
+so few no interval is honest to a percentage point. Exit code 1 where blocks with enough hold in less \
+than 93 % or more than 97 % of all cases.
+
+Example:
+  etalon coverage scenes/*.toml -o coverage.csv")]
+pub struct Coverage {
+    /// The scenes.
+    #[arg(value_name = "SCENE.toml", required = true)]
+    pub scenes: Vec<PathBuf>,
+    /// Lay this over the scenes: a dotted key and a TOML value or a bare word.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub set: Vec<(String, String)>,
+    /// Samplers to be tested.
+    #[arg(
+        long,
+        value_name = "S,…",
+        value_delimiter = ',',
+        default_value = "independent,stratified,sobol"
+    )]
+    pub samplers: Vec<String>,
+    /// Camera paths per pixel of a tested render, at least 2.
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..))]
+    pub spp: u32,
+    /// Tested renders of each scene and sampler.
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..))]
+    pub renders: u32,
+    /// Longer edge of the pictures in pixels.
+    #[arg(long, value_name = "N", default_value_t = 96, value_parser = clap::value_parser!(u32).range(8..))]
+    pub edge: u32,
+    /// A CSV file to write the counts to.
+    #[arg(short, long, value_name = "FILE.csv")]
+    pub output: Option<PathBuf>,
+    /// Threads to work with; by default one for each of the machine's.
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
 }

@@ -6,7 +6,9 @@ use std::path::PathBuf;
 use etalon::film;
 use etalon::plan::PlanError;
 use etalon::render::bins::BinError;
+use etalon::render::target::Singular;
 use etalon::scene::SceneError;
+use etalon::study::compare::CompareError;
 use etalon::study::finders::OracleError;
 
 use super::trace::RayError;
@@ -21,12 +23,9 @@ pub enum CommandError {
     #[error(transparent)]
     Rays(#[from] RayError),
     /// An object's matrix has no inverse.
-    #[error("error: the object \"{name}\" has a transform that is not invertible")]
-    Singular {
-        /// The object.
-        name: String,
-    },
-    /// A file of the comparison of finders cannot be read.
+    #[error("error: {0}")]
+    Singular(#[from] Singular),
+    /// A table cannot be read.
     #[error("error: cannot read {}: {reason}", path.display())]
     Table {
         /// The file.
@@ -56,6 +55,15 @@ pub enum CommandError {
     /// The scene cannot be carried out.
     #[error("error: {0}")]
     Plan(#[from] PlanError),
+    /// Pictures cannot be compared.
+    #[error("error: {0}")]
+    Compare(#[from] CompareError),
+    /// Pictures of different scenes: how they differ, and which of them is stale.
+    #[error("error: {0}{sep}{1}", sep = if .1.is_empty() { "" } else { "; " })]
+    Scenes(String, String),
+    /// No verdict on two pictures.
+    #[error("error: no verdict: {0}")]
+    NoVerdict(String),
     /// A picture cannot be written.
     #[error("error: {0}")]
     Film(#[from] film::Error),
@@ -117,6 +125,9 @@ pub enum CommandError {
     /// The result could not be written.
     #[error("error: cannot write the output: {0}")]
     Output(io::Error),
+    /// A study cannot be carried out or shown.
+    #[error("error: {}", .0.trim_start_matches("error: "))]
+    Study(String),
     /// An argument that does not fit the scene.
     #[error("error: {0}")]
     Arguments(String),

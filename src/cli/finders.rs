@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+use etalon::study::failures;
 use etalon::study::finders::chart::{csv, svg};
 use etalon::study::finders::map::map;
 use etalon::study::finders::{CONTESTANTS, Contestant, Oracle, Result as Outcome, run as run_one};
@@ -14,6 +15,9 @@ use super::{Answer, tell};
 
 /// Charts all finders, or maps one surface.
 pub fn run(arguments: &Finders) -> Result<Answer, CommandError> {
+    if arguments.failures {
+        return failures(arguments);
+    }
     let rays = arguments.rays.as_deref().map(read).transpose()?;
     let shapes = arguments.shapes.as_deref().map(read).transpose()?;
     let oracle = Oracle::new(rays.as_deref(), shapes.as_deref())?;
@@ -21,6 +25,26 @@ pub fn run(arguments: &Finders) -> Result<Answer, CommandError> {
         Some(name) => paint(arguments, &oracle, name),
         None => chart(arguments, &oracle),
     }
+}
+
+/// Maps where each method fails.
+fn failures(arguments: &Finders) -> Result<Answer, CommandError> {
+    let points = failures::run(arguments.count as usize, |subject, family| {
+        if !arguments.quiet {
+            tell(&format!("running {}, {}", subject.name(), family.name()));
+        }
+    });
+    let table = failures::chart::csv(&points);
+    write(&arguments.output.join("failures.csv"), table.as_bytes())?;
+    let picture = arguments.output.join("failures.svg");
+    let drawn = failures::chart::svg(&points).map_err(|error| CommandError::Result {
+        path: picture.clone(),
+        reason: error.to_string(),
+    })?;
+    write(&picture, drawn.as_bytes())?;
+    say(&failures::summary(&points))?;
+    let safe = points.iter().all(failures::Point::is_safe);
+    Ok(if safe { Answer::Good } else { Answer::No })
 }
 
 fn chart(arguments: &Finders, oracle: &Oracle) -> Result<Answer, CommandError> {

@@ -1,11 +1,15 @@
 //! Commands: one file each, their arguments in [`args`].
 
 mod args;
+mod chart;
+mod compare;
+mod coverage;
 mod error;
 mod finders;
 mod info;
 mod render;
 mod replay;
+mod study;
 mod trace;
 mod values;
 
@@ -40,7 +44,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Info(info) => info::run(info),
         Command::Trace(trace) => trace::run(trace),
         Command::Replay(replay) => replay::run(replay),
+        Command::Compare(compare) => compare::run(compare),
         Command::Finders(finders) => finders::run(finders),
+        Command::Study(study) => study::run(study),
+        Command::Coverage(coverage) => coverage::run(coverage),
+        Command::Chart(chart) => chart::run(chart),
     };
     match answer {
         Ok(Answer::Good) => ExitCode::SUCCESS,
@@ -64,6 +72,16 @@ fn show(message: &clap::Error) -> ExitCode {
         ExitCode::from(COULD_NOT)
     } else {
         ExitCode::SUCCESS
+    }
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_./=,:+@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
     }
 }
 

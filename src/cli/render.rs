@@ -1,18 +1,20 @@
 //! `etalon render`: a scene to a picture.
 
+mod goal;
 mod job;
 mod layers;
 mod memory;
 mod picture;
-mod progress;
+pub mod progress;
 mod report;
 
 use std::io::Write as _;
+use std::num::NonZeroUsize;
 use std::path::Path;
 
 use etalon::film::{exr, png, whole};
-use etalon::render::Instructions;
-use etalon::render::{Request, dispatch, render, render_binned};
+use etalon::plan::explain;
+use etalon::render::{Instructions, Request, render, render_binned};
 use etalon::scene;
 use rayon::ThreadPool;
 
@@ -26,15 +28,16 @@ use progress::Watch;
 /// Renders the scene as asked for.
 pub fn run(arguments: &Render) -> Result<Answer, CommandError> {
     let instructions = instructions(arguments.instructions)?;
-    let jobs = jobs(arguments)?;
+    let mut jobs = jobs(arguments)?;
     for job in &jobs {
         job.probe()?;
     }
-    let threads = threads(arguments)?;
+    let threads = threads(arguments.threads)?;
     progress::listen();
-    for job in &jobs {
-        let report = threads.install(|| carry_out(arguments, job, instructions))?;
-        say(&report)?;
+    for job in &mut jobs {
+        if let Some(report) = threads.install(|| carry_out(arguments, job, instructions))? {
+            say(&report)?;
+        }
         if progress::interrupted() {
             break;
         }
@@ -65,9 +68,9 @@ fn jobs(arguments: &Render) -> Result<Vec<Job>, CommandError> {
 }
 
 /// The threads to work with.
-fn threads(arguments: &Render) -> Result<ThreadPool, CommandError> {
+pub fn threads(count: Option<NonZeroUsize>) -> Result<ThreadPool, CommandError> {
     // 0 stands for one a thread of the machine.
-    let count = arguments.threads.map_or(0, std::num::NonZeroUsize::get);
+    let count = count.map_or(0, NonZeroUsize::get);
     rayon::ThreadPoolBuilder::new()
         .num_threads(count)
         .build()
@@ -75,20 +78,34 @@ fn threads(arguments: &Render) -> Result<ThreadPool, CommandError> {
 }
 
 /// The instruction set asked for, if this machine has it.
-fn instructions(asked: values::Instructions) -> Result<Instructions, CommandError> {
-    let name = asked.name();
-    dispatch::instructions(name).ok_or(CommandError::Instructions(name.unwrap_or("known")))
+pub fn instructions(asked: values::Instructions) -> Result<Instructions, CommandError> {
+    let Some(name) = asked.name() else {
+        return Ok(Instructions::best());
+    };
+    Instructions::named(name).ok_or(CommandError::Instructions(name))
 }
 
-/// Renders and writes one picture, on the threads of the current pool; the answer is the report.
+/// Renders and writes one picture, on the threads of the current pool; the answer is the report,
+/// `None` where the user stopped before the picture was begun.
 fn carry_out(
     arguments: &Render,
-    job: &Job,
+    job: &mut Job,
     instructions: Instructions,
-) -> Result<String, CommandError> {
+) -> Result<Option<String>, CommandError> {
     if !arguments.quiet && !job.plan.left_out.is_empty() {
         let names = job.plan.left_out.join(", ");
         tell(&format!("note: light left out: {names}"));
+    }
+    if let Some(doubt) = explain::doubt(&job.plan).filter(|_| !arguments.quiet) {
+        tell(&format!("note: single precision: {doubt}"));
+    }
+    let goal = goal::wanted(arguments);
+    let mut chosen = None;
+    if let Some(goal) = goal {
+        chosen = goal::aim(arguments, job, goal, instructions)?;
+        if chosen.is_none() {
+            return Ok(None);
+        }
     }
     let request = Request {
         window: job.window,
@@ -105,17 +122,18 @@ fn carry_out(
     let outcome = report::Outcome {
         rendered: &rendered,
         interrupted: progress::interrupted(),
+        goal: goal.zip(chosen),
     };
     let picture = picture::assemble(arguments, job, &outcome, instructions)?;
     exr::write(&job.output, &picture)?;
     if let (Some(preview), Some(rgb)) = (&job.preview, picture.rgb()) {
         png::write_preview(preview, picture.width, picture.height, &rgb)?;
     }
-    Ok(report::lines(arguments, job, &outcome))
+    Ok(Some(report::lines(arguments, job, &outcome)))
 }
 
 /// Lines on stdout.
-fn say(text: &str) -> Result<(), CommandError> {
+pub fn say(text: &str) -> Result<(), CommandError> {
     let mut output = std::io::stdout().lock();
     writeln!(output, "{text}")
         .and_then(|()| output.flush())

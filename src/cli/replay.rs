@@ -5,7 +5,7 @@ use std::io::Write;
 use etalon::integrate::chunk::Request;
 use etalon::integrate::replay::{LightVertex, Replayed, Vertex};
 use etalon::plan::Plan;
-use etalon::render::{instructions, replay};
+use etalon::render::{Instructions, replay};
 use etalon::scene::{self, Scene};
 use glam::DVec3;
 
@@ -31,13 +31,12 @@ pub fn run(arguments: &Replay) -> Result<Answer, CommandError> {
         )));
     }
     let plan = Plan::new(&scene, false)?;
-    let level = instructions(None).ok_or(CommandError::Instructions("known"))?;
     let request = Request {
         x,
         y,
         sample: arguments.sample,
     };
-    let path = replay(&plan, level, request);
+    let path = replay(&plan, Instructions::best(), request);
     let text = describe(&scene, request, &path);
     std::io::stdout()
         .write_all(text.as_bytes())

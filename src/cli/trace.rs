@@ -1,11 +1,11 @@
 //! `etalon trace`: given rays to hits.
 
 mod rays;
-mod target;
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
+use etalon::render::target::{Decided, First, FirstHit, Found, Target};
 use etalon::scene;
 use rayon::prelude::*;
 
@@ -14,7 +14,6 @@ use super::error::CommandError;
 use super::{Answer, tell};
 pub use rays::RayError;
 use rays::{Line, Lines, Table};
-pub use target::{Decided, First, FirstHit, Found, Target};
 
 use etalon::shape::implicit::certified::{Tier, Workspace};
 

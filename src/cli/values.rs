@@ -226,3 +226,26 @@ impl Instructions {
         }
     }
 }
+
+/// A finite number.
+pub fn finite(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err("not a finite number".to_owned()),
+    }
+}
+
+/// What a wanted error is an error of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum GoalTarget {
+    /// The mean of the image.
+    Image,
+    /// The mean of its worst block.
+    Block,
+}
+
+/// A share above 0 and below 1.
+pub fn share(text: &str) -> Result<f64, Expected> {
+    let share = text.parse().ok().filter(|s: &f64| *s > 0.0 && *s < 1.0);
+    share.ok_or(Expected("a share above 0 and below 1, such as 0.01"))
+}

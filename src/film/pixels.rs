@@ -20,11 +20,59 @@ pub struct Pixels {
 
 /// A pixel's mean and, where replicates allow, its standard error.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimate {
+pub struct Estimate<const N: usize = 3> {
     /// Mean of each channel.
-    pub mean: [f64; 3],
+    pub mean: [f64; N],
     /// Standard error of each mean; NaN with a single replicate.
-    pub standard_error: [f64; 3],
+    pub standard_error: [f64; N],
+}
+
+impl<const N: usize> Estimate<N> {
+    /// Of what has no samples.
+    pub const UNKNOWN: Self = Self {
+        mean: [f64::NAN; N],
+        standard_error: [f64::NAN; N],
+    };
+
+    /// From the sums over the samples of each replicate, after `samples` samples in all, channels
+    /// mapped by `channels`.
+    ///
+    /// With nᵣ samples in replicate r and m its mean, the squared standard error is
+    /// Σ nᵣ (mᵣ − m)²/((K − 1) Σ nᵣ), unbiased where a replicate's variance falls as 1/nᵣ, and for
+    /// any law where all have the same number.
+    pub fn new<'a>(
+        replicates: Replicates,
+        samples: u32,
+        sums: impl Iterator<Item = &'a [f64; N]> + Clone,
+        channels: impl Fn([f64; N]) -> [f64; N],
+    ) -> Self {
+        let count = replicates.count(samples);
+        let total = f64::from(samples);
+        let mut sum = [0.0; N];
+        for replicate in sums.clone() {
+            for (sum, value) in sum.iter_mut().zip(replicate) {
+                *sum += value;
+            }
+        }
+        let mean = channels(sum.map(|s| s / total));
+        let mut squares = [0.0; N];
+        for (r, replicate) in sums.enumerate().take(count as usize) {
+            let own = f64::from(replicates.samples_of(r as u32, samples));
+            let own_mean = channels(replicate.map(|s| s / own));
+            for ((square, own_mean), mean) in squares.iter_mut().zip(own_mean).zip(mean) {
+                *square += own * (own_mean - mean) * (own_mean - mean);
+            }
+        }
+        let freedom = if count > 1 {
+            f64::from(count - 1)
+        } else {
+            f64::NAN
+        };
+        Self {
+            mean,
+            standard_error: squares.map(|s| (s / (freedom * total)).sqrt()),
+        }
+    }
 }
 
 /// Whether all three are numbers. (The sum of f64 overflows only beyond what an f32 can hold or any
@@ -79,43 +127,33 @@ impl Pixels {
         rejected
     }
 
+    /// Replicates that `samples` samples reach.
+    pub fn replicates(&self, samples: u32) -> u32 {
+        self.replicates.count(samples)
+    }
+
+    /// Mean of a pixel's samples in each of its replicates, after `samples` samples in all.
+    pub fn replicate_means(
+        &self,
+        pixel: usize,
+        samples: u32,
+    ) -> impl Iterator<Item = [f64; 3]> + '_ {
+        let count = self.replicates.count(samples) as usize;
+        let sums = &self.sums[pixel * self.slots..][..self.slots];
+        (0..).zip(sums).take(count).map(move |(replicate, sum)| {
+            let own = f64::from(self.replicates.samples_of(replicate, samples));
+            sum.map(|s| s / own)
+        })
+    }
+
     /// Mean and standard error of a pixel after `samples` samples, channels mapped by `channels`.
-    ///
-    /// With nᵣ samples in replicate r and m its mean, the squared standard error is
-    /// Σ nᵣ (mᵣ − m)²/((K − 1) Σ nᵣ), unbiased where a replicate's variance falls as 1/nᵣ, and for
-    /// any law where all have the same number.
     pub fn estimate(
         &self,
         pixel: usize,
         samples: u32,
         channels: impl Fn([f64; 3]) -> [f64; 3],
     ) -> Estimate {
-        let count = self.replicates.count(samples);
         let sums = &self.sums[pixel * self.slots..][..self.slots];
-        let total = f64::from(samples);
-        let mut sum = [0.0; 3];
-        for replicate in sums {
-            for (sum, value) in sum.iter_mut().zip(replicate) {
-                *sum += value;
-            }
-        }
-        let mean = channels(sum.map(|s| s / total));
-        let mut squares = [0.0; 3];
-        for (r, replicate) in sums.iter().enumerate().take(count as usize) {
-            let own = f64::from(self.replicates.samples_of(r as u32, samples));
-            let own_mean = channels(replicate.map(|s| s / own));
-            for ((square, own_mean), mean) in squares.iter_mut().zip(own_mean).zip(mean) {
-                *square += own * (own_mean - mean) * (own_mean - mean);
-            }
-        }
-        let freedom = if count > 1 {
-            f64::from(count - 1)
-        } else {
-            f64::NAN
-        };
-        Estimate {
-            mean,
-            standard_error: squares.map(|s| (s / (freedom * total)).sqrt()),
-        }
+        Estimate::new(self.replicates, samples, sums.iter(), channels)
     }
 }

@@ -45,15 +45,6 @@ pub fn write_preview(
         path: path.to_owned(),
         reason,
     };
-    let refused = |source| Error::Write {
-        path: path.to_owned(),
-        source,
-    };
-    let (Ok(columns), Ok(rows)) = (u32::try_from(width), u32::try_from(height)) else {
-        return Err(contradiction(format!(
-            "{width} × {height} is too large for PNG"
-        )));
-    };
     if rgb.is_empty() || width.checked_mul(height) != Some(rgb.len()) {
         let count = rgb.len();
         return Err(contradiction(format!(
@@ -65,18 +56,39 @@ pub fn write_preview(
         .iter()
         .flat_map(|&pixel| encode(pixel, exposure))
         .collect();
+    write_bytes(path, width, height, &bytes)?;
+    Ok(exposure)
+}
+
+/// Writes `width` × `height` sRGB colours of three bytes, rows from the top, whole or not at all.
+///
+/// # Errors
+/// As [`write_preview`].
+pub fn write_bytes(path: &Path, width: usize, height: usize, bytes: &[u8]) -> Result<(), Error> {
+    let contradiction = |reason| Error::Picture {
+        path: path.to_owned(),
+        reason,
+    };
+    let refused = |source| Error::Write {
+        path: path.to_owned(),
+        source,
+    };
+    let (Ok(columns), Ok(rows)) = (u32::try_from(width), u32::try_from(height)) else {
+        return Err(contradiction(format!(
+            "{width} × {height} is too large for PNG"
+        )));
+    };
     whole::write(path, |file| {
         let mut out = BufWriter::new(file);
         let encoder = PngEncoder::new(&mut out);
         encoder
-            .write_image(&bytes, columns, rows, ExtendedColorType::Rgb8)
+            .write_image(bytes, columns, rows, ExtendedColorType::Rgb8)
             .map_err(|error| match error {
                 ImageError::IoError(source) => refused(source),
                 other => contradiction(other.to_string()),
             })?;
         out.flush().map_err(refused)
-    })?;
-    Ok(exposure)
+    })
 }
 
 /// The factor a picture is exposed by: 1 while the 99th percentile of its luminance lies between

@@ -5,7 +5,7 @@
 //! *comma* as decimal sign (the dot separates layers); string attributes name the version of
 //! the layout and the unit.
 
-use super::{Attribute, Channel, Picture};
+use super::{Attribute, Channel, Picture, names};
 
 /// The unit as the layout's own library and pbrt-v4 write it. The values are spectral radiance,
 /// a mean over the bin's wavelengths; "per nm" is implied by the channel names.
@@ -36,6 +36,8 @@ pub struct Bin {
     pub sensitivity: Vec<(f64, f64)>,
     /// Spectral radiance, W·m⁻²·sr⁻¹·nm⁻¹, one value a pixel.
     pub values: Vec<f32>,
+    /// Standard error of each value; left empty where it is not known.
+    pub standard_errors: Vec<f32>,
 }
 
 impl Picture {
@@ -48,6 +50,11 @@ impl Picture {
             if !bin.sensitivity.is_empty() {
                 self.attributes
                     .push(text(&name, &sensitivity(&bin.sensitivity)));
+            }
+            if !bin.standard_errors.is_empty() {
+                let name = names::in_layer(names::STANDARD_ERROR, &name);
+                self.channels
+                    .push(Channel::float(name, bin.standard_errors));
             }
             self.channels.push(Channel::float(name, bin.values));
         }

@@ -184,9 +184,9 @@ fn render_inlined<L: Lanes, const C: usize>(
         }
         pool.length = going_on;
     }
-    tristimulus.clear();
-    for slot in 0..requests.len() {
-        tristimulus.push(spectrometer.tristimulus(rows, slot));
+    tristimulus.resize(requests.len(), [L::Scalar::from_f64(0.0); 3]);
+    for (slot, xyz) in tristimulus.iter_mut().enumerate() {
+        *xyz = spectrometer.tristimulus(rows, slot);
     }
     // In the order of the samples, not of the paths' ends.
     beyond_slots.sort_unstable();

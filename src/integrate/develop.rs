@@ -10,8 +10,9 @@ use crate::spectrum::observer;
 /// stands for, (number of cells × width of the cell)/C, over ∫ȳ.
 #[derive(Debug, Clone)]
 pub struct Spectrometer<T> {
-    /// By row of the wavelength grid and wavelength: for X, Y and Z, and a zero.
-    weights: Vec<[T; 4]>,
+    /// By row of the wavelength grid and pair of wavelengths: for X, Y and Z, and a zero, twice; zeros
+    /// for the second of an odd number.
+    weights: Vec<[T; 8]>,
 }
 
 impl<T: Scalar> Spectrometer<T> {
@@ -27,30 +28,37 @@ impl<T: Scalar> Spectrometer<T> {
             })
             .collect();
         let rows = CELLS / wavelengths;
+        let pairs = wavelengths.div_ceil(2);
         let weight = |row: usize, j: usize| {
-            let [x, y, z] = by_cell[j * rows + row];
+            let [x, y, z] = by_cell.get(j * rows + row).copied().unwrap_or_default();
             [x, y, z, 0.0].map(T::from_f64)
         };
+        let both = |place: usize| {
+            let (row, pair) = (place / pairs, place % pairs);
+            let [a, b, c, d] = weight(row, 2 * pair);
+            let [e, f, g, h] = weight(row, 2 * pair + 1);
+            [a, b, c, d, e, f, g, h]
+        };
         Self {
-            weights: (0..rows)
-                .flat_map(|row| (0..wavelengths).map(move |j| (row, j)))
-                .map(|(row, j)| weight(row, j))
-                .collect(),
+            weights: (0..rows * pairs).map(both).collect(),
         }
     }
 
     /// X, Y, Z of one sample.
     #[inline(always)]
     pub fn tristimulus<const C: usize>(&self, rows: &Rows<T, C>, slot: usize) -> [T; 3] {
-        let radiance = &rows.paths[slot].radiance;
-        let table: &[[[T; 4]; C]] = self.weights.as_chunks().0;
-        let mut sum = [T::default(); 4];
-        for (radiance, weights) in radiance.iter().zip(&table[rows.row[slot] as usize]) {
-            for (sum, weight) in sum.iter_mut().zip(weights) {
-                *sum = radiance.fused(*weight, *sum);
+        let radiance = rows.paths[slot].radiance;
+        let first = rows.row[slot] as usize * C.div_ceil(2);
+        let weights = &self.weights[first..first + C.div_ceil(2)];
+        // Two wavelengths side by side fill a vector of eight.
+        let mut sum = [T::default(); 8];
+        for (pair, weights) in weights.iter().enumerate() {
+            let [a, b] = [radiance[2 * pair], radiance[(2 * pair + 1).min(C - 1)]];
+            let both = [a, a, a, a, b, b, b, b];
+            for k in 0..8 {
+                sum[k] = both[k].fused(weights[k], sum[k]);
             }
         }
-        let [x, y, z, _] = sum;
-        [x, y, z]
+        [sum[0] + sum[4], sum[1] + sum[5], sum[2] + sum[6]]
     }
 }

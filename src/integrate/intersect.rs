@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::list;
 use super::many::{self, candidates};
 use super::model::Model;
 use super::pool::each;
@@ -170,7 +171,7 @@ impl<L: Lanes> Search<L> {
 
     /// Asks one object, for the lanes in `asked`.
     #[inline(always)]
-    fn ask(
+    pub fn ask(
         &mut self,
         l: L,
         model: &Model<L::Scalar>,
@@ -187,13 +188,19 @@ impl<L: Lanes> Search<L> {
             return;
         }
         let c = candidate(l, &span, &asked);
+        let part = c.part.plus(l.int(model.parts.first[k as usize]));
+        self.take(l, &c, part);
+    }
+
+    /// Takes a crossing with the given part into account.
+    #[inline(always)]
+    pub fn take(&mut self, l: L, c: &Candidate<L>, part: L::Int) {
         let take = c.certain & c.at.high.lt(self.best.high);
         // Of this crossing and the best so far, the one that is not taken remains a rival.
         let loser = l.select(take, self.best.low, c.at.low);
         self.rival = l.select(c.possible, loser.min(self.rival), self.rival);
         self.best.low = l.select(take, c.at.low, self.best.low);
         self.best.high = l.select(take, c.at.high, self.best.high);
-        let part = c.part.plus(l.int(model.parts.first[k as usize]));
         self.part = l.select_int(take, part, self.part);
     }
 
@@ -229,13 +236,7 @@ pub fn nearest<L: Lanes>(
         #[inline(always)]
         || {
             let search = match &model.hierarchy {
-                None => {
-                    let mut search = Search::new(l);
-                    for k in 0..model.shapes.len() as u32 {
-                        search.ask(l, model, k, ray, leaving, active);
-                    }
-                    search
-                }
+                None => list::search(l, model, &model.list, ray, leaving, active),
                 Some(many) => many::search(l, model, many, ray, leaving, active),
             };
             let high = search.best.high;
@@ -309,7 +310,7 @@ impl<L: Lanes> Blocks<L> {
 
     /// Asks one object, for the lanes in `asked`.
     #[inline(always)]
-    fn ask(
+    pub fn ask(
         &mut self,
         l: L,
         model: &Model<L::Scalar>,
@@ -326,9 +327,14 @@ impl<L: Lanes> Blocks<L> {
         if !(asked.all & !span.miss).any() {
             return;
         }
-        let c = candidate(l, &span, &asked);
-        self.blocked = self.blocked | (c.certain & c.at.high.lt(shadow.limit));
-        self.doubtful = self.doubtful | (c.possible & c.at.low.lt(shadow.limit));
+        self.take(&candidate(l, &span, &asked), shadow.limit);
+    }
+
+    /// Takes a crossing into account.
+    #[inline(always)]
+    pub fn take(&mut self, c: &Candidate<L>, limit: L::Real) {
+        self.blocked = self.blocked | (c.certain & c.at.high.lt(limit));
+        self.doubtful = self.doubtful | (c.possible & c.at.low.lt(limit));
     }
 
     /// The same as one copy of code, for the hierarchy.
@@ -366,13 +372,7 @@ pub fn occluded<L: Lanes>(
         #[inline(always)]
         || {
             let blocks = match &model.hierarchy {
-                None => {
-                    let mut blocks = Blocks::new(l);
-                    for &k in &model.occluders {
-                        blocks.ask(l, model, k, shadow, leaving, active);
-                    }
-                    blocks
-                }
+                None => list::blocks(l, model, &model.occluders, shadow, leaving, active),
                 Some(many) => many::blocks(l, model, many, shadow, leaving, active),
             };
             let Blocks {

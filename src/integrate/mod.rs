@@ -9,6 +9,7 @@ pub mod bounce;
 pub mod chunk;
 pub mod develop;
 pub mod intersect;
+pub mod list;
 mod many;
 pub mod model;
 pub mod parts;

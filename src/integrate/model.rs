@@ -1,5 +1,6 @@
 //! What the loop works on: the scene as flat tables of lane scalars, built by the plan.
 
+use super::list::List;
 use super::parts::Parts;
 use crate::camera::LaneCamera;
 use crate::light::{LaneLight, SmallLights};
@@ -155,8 +156,10 @@ pub struct Model<T: Scalar> {
     pub hierarchy: Option<Many<T>>,
     /// Placed shapes by object.
     pub shapes: Vec<LaneShape<T>>,
-    /// The objects that shadow rays are tested against, in order.
-    pub occluders: Vec<u32>,
+    /// All objects; asked where there is no hierarchy.
+    pub list: List<T>,
+    /// The objects that shadow rays are tested against.
+    pub occluders: List<T>,
     /// Implicit surfaces: (object, surface).
     pub implicits: Vec<(u32, LaneImplicit<T>)>,
     /// What hits look like, by part.
@@ -178,6 +181,6 @@ pub struct Model<T: Scalar> {
 impl<T: Scalar> Model<T> {
     /// Whether an object can hide a light from a surface.
     pub fn hides(&self, object: u32) -> bool {
-        self.occluders.binary_search(&object).is_ok()
+        self.occluders.objects.binary_search(&object).is_ok()
     }
 }

@@ -108,11 +108,6 @@ impl<T: Scalar> Parts<T> {
         }
         parts
     }
-
-    /// The object of a part; a number that is none's stands for nothing.
-    pub fn object(&self, part: u32) -> Option<u32> {
-        self.entries.get(part as usize).map(|e| e.object)
-    }
 }
 
 fn word_of<T>(kind: PartKind, shading: &ObjectShading<T>) -> u32 {

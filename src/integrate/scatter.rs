@@ -9,6 +9,7 @@ use super::surface::Surfaces;
 use crate::light::Towards;
 use crate::material::fresnel;
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
+use crate::math::lookup::SMALL;
 use crate::math::vec3::Vec3;
 use crate::sample::Slot;
 use crate::sample::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
@@ -201,7 +202,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let model = self.model;
         let zero = l.real(0.0);
         let [u, v] = numbers;
-        let (chosen, u) = self.choose_light(l, u);
+        let (chosen, u) = self.choose_light(l, u, diffuse);
         let numbers = [u, v];
         let mut towards = Towards::<L> {
             direction: normal,
@@ -289,16 +290,20 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         lit
     }
 
-    /// The number of each lane's light, by the lights' probabilities, and u stretched from the share
-    /// of [0, 1) that belongs to that light over all of it.
+    /// The number of each lane's light, by the lights' probabilities, and a number for its point:
+    /// of few lights u chooses, stretched afterwards from the share of [0, 1) that belongs to the
+    /// light over all of it; a number of its own, searched for, among many.
     #[inline(always)]
-    fn choose_light(&self, l: L, u: L::Real) -> (L::Int, L::Real) {
+    fn choose_light(&self, l: L, u: L::Real, m: L::Mask) -> (L::Int, L::Real) {
         let mut chosen = l.int(0);
         let [first, others @ ..] = self.model.lights.as_slice() else {
             return (chosen, u);
         };
         if others.is_empty() {
             return (chosen, u);
+        }
+        if others.len() >= SMALL {
+            return (self.choose_among_many(l, m), u);
         }
         let mut below = l.splat(first.below);
         let mut probability = l.splat(first.probability);
@@ -311,6 +316,21 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let largest = 1.0 - 1.0 / (1u64 << L::UNIFORM_BITS) as f64;
         let stretched = ((u - below) / probability).min(l.real(largest));
         (chosen, stretched)
+    }
+
+    /// The number of each lane's light where a share of the numbers' digits would be too coarse for
+    /// its point, and looking at every light too slow.
+    #[inline(never)]
+    fn choose_among_many(&self, l: L, m: L::Mask) -> L::Int {
+        let sequence = &self.model.sequence;
+        let variates = array(l, sequence.single(l, self.id, Slot::Choice, self.depth));
+        let lights = &self.model.lights;
+        let mut chosen = [0; WIDEST];
+        for i in each(m.bits()) {
+            let later = lights.partition_point(|light| light.below <= variates[i % WIDEST]);
+            chosen[i % WIDEST] = later.saturating_sub(1) as u32;
+        }
+        l.load_int(&chosen)
     }
 
     /// Reflection or refraction at glass, chosen by the mean reflectance over the wavelengths

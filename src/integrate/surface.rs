@@ -114,7 +114,7 @@ pub fn surfaces<L: Lanes>(
                 emission: gathered.emission,
                 emission_weight: l.real(1.0),
             };
-            others(l, model, [p, ray.direction], has(word::OTHER), &mut out);
+            others(l, model, ray, nearest, p, has(word::OTHER), &mut out);
             let front = out.normal.dot(ray.direction).lt(l.real(0.0));
             out.front = hit & front;
             out.emits = (has(word::EMITS_FRONT) & front) | (has(word::EMITS_BACK) & !front);
@@ -236,12 +236,14 @@ fn one_by_one<L: Lanes>(
     out
 }
 
-/// The surfaces of shapes that no few numbers describe, met at `p` in the directions `d`.
+/// The surfaces of shapes that no few numbers describe, met at `p`.
 #[inline(always)]
 fn others<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
-    [p, d]: [Vec3<L::Real>; 2],
+    ray: &LaneRay<L>,
+    nearest: &Nearest<L>,
+    p: Vec3<L::Real>,
     m: L::Mask,
     out: &mut Surfaces<L>,
 ) {
@@ -256,7 +258,8 @@ fn others<L: Lanes>(
             let surface = if shape.kind.is_some() {
                 shape.surface(l, p)
             } else {
-                implicit_surface(l, model, k, p, d, here)
+                let reach = ray.extent + nearest.t;
+                implicit_surface(l, model, k, [p, ray.direction], reach, here)
             };
             out.point = Vec3::select(l, here, surface.point, out.point);
             out.normal = Vec3::select(l, here, surface.normal, out.normal);
@@ -290,22 +293,28 @@ fn checkers<L: Lanes>(l: L, model: &Model<L::Scalar>, checkered: L::Mask, out: &
     );
 }
 
-/// An implicit surface's outward normal; finite everywhere.
+/// The point on an implicit surface and its outward normal; finite everywhere. What rounding has
+/// moved a point by is bounded by that of the largest magnitude on the way to it, `reach`.
 #[inline(always)]
 fn implicit_surface<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
     object: u32,
-    point: Vec3<L::Real>,
-    direction: Vec3<L::Real>,
+    [mut point, direction]: [Vec3<L::Real>; 2],
+    reach: L::Real,
     here: L::Mask,
 ) -> LaneSurface<L> {
-    let inverse = &model.shapes[object as usize].inverse;
+    let shape = &model.shapes[object as usize];
+    let inverse = &shape.inverse;
     let local = inverse.point(l, point);
     let mut normal = local;
     for (k, implicit) in &model.implicits {
         if *k == object {
-            normal = implicit.normal(l, local, inverse.vector(l, direction), here);
+            let scales = [point.max_abs(), reach];
+            let direction = inverse.vector(l, direction);
+            let (outward, step) = implicit.surface(l, local, direction, scales, here);
+            normal = outward;
+            point = point - shape.forward.vector(l, step);
         }
     }
     LaneSurface {

@@ -1,6 +1,7 @@
 //! Lights that can be sampled from a point: direction, distance and solid-angle density.
 
 mod cube;
+mod cylinder;
 mod rectangle;
 mod small;
 mod sphere;
@@ -12,6 +13,7 @@ use crate::math::vec3::Vec3;
 use crate::sample::warp::square_to_disk;
 
 pub use cube::CubeLight;
+pub use cylinder::CylinderLight;
 pub use rectangle::RectangleLight;
 pub use small::SmallLights;
 pub use sphere::{SphereLight, SphereTable};
@@ -58,6 +60,8 @@ pub enum LightShape<T> {
     Sphere(SphereLight<T>),
     /// Any parallelepiped: its visible faces by area.
     Cube(CubeLight<T>),
+    /// A right circular cylinder: its visible parts.
+    Cylinder(CylinderLight<T>),
     /// A point.
     Point([T; 3]),
     /// Parallel light: the direction towards it.
@@ -91,6 +95,7 @@ impl<T: Scalar> LightShape<T> {
             }
             Self::Sphere(light) => light.sample(l, p, [u, v]),
             Self::Cube(light) => light.sample(l, p, [u, v]),
+            Self::Cylinder(light) => light.sample(l, p, [u, v]),
             Self::Point(at) => {
                 let to = vector(l, at) - p;
                 let squared = to.length_squared();
@@ -117,7 +122,7 @@ impl<T: Scalar> LightShape<T> {
     /// It is a function of p and the direction alone, the same for both sampling strategies, bit
     /// for bit: the weights of a direction then sum to 1 however grazing it is. (The hit's own
     /// distance and normal would be as good, but rounded otherwise, and 1/cos enlarges that.) The
-    /// normal only tells the faces of a cube apart.
+    /// normal only tells the faces of a cube or cylinder apart.
     #[inline(always)]
     pub fn pdf<L: Lanes<Scalar = T>>(
         &self,
@@ -131,6 +136,7 @@ impl<T: Scalar> LightShape<T> {
             Self::Disk(light) | Self::Parallelogram(light) => light.pdf(l, p, direction),
             Self::Sphere(light) => light.pdf(l, p, direction),
             Self::Cube(light) => light.pdf(l, p, direction, normal),
+            Self::Cylinder(light) => light.pdf(l, p, direction, normal),
             Self::Point(_) | Self::Directional(_) => l.real(0.0),
         }
     }

@@ -1,4 +1,5 @@
-//! Running f64 lanes on the instruction set of this machine, from code that has no lanes itself.
+//! Instruction sets: which this machine has, and running f64 lanes on one of them from code that
+//! has no lanes itself.
 
 use fearless_simd::Level;
 
@@ -17,7 +18,7 @@ pub trait Job {
     fn run<L: DoubleLanes>(self, lanes: L) -> Self::Output;
 }
 
-/// An instruction set for f64 lanes. The results are the same bits on each.
+/// An instruction set. The results are the same bits on each.
 #[derive(Debug, Clone, Copy)]
 pub enum Instructions {
     /// x86-64 with AVX-512 (Ice Lake and later).
@@ -32,9 +33,20 @@ pub enum Instructions {
     /// Arm with Neon.
     #[cfg(target_arch = "aarch64")]
     Neon(fearless_simd::Neon),
-    /// One lane after the other.
-    Scalar,
+    /// One lane after the other; the path loop, which has no such copy where there are vectors,
+    /// takes those that every machine has.
+    Scalar(Least),
 }
+
+/// The vectors that every machine of its kind has.
+#[cfg(target_arch = "x86_64")]
+type Least = fearless_simd::Sse2;
+/// The vectors that every machine of its kind has.
+#[cfg(target_arch = "aarch64")]
+type Least = fearless_simd::Neon;
+/// Vectors in the compiler's hands.
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+type Least = fearless_simd::Fallback;
 
 impl Instructions {
     /// All that this machine has, the best first.
@@ -46,17 +58,29 @@ impl Instructions {
             all.extend(level.as_avx512().map(Self::Avx512));
             all.extend(level.as_avx2().map(Self::Avx2));
             all.extend(level.as_sse2().map(Self::Sse2));
+            all.extend(level.as_sse2().map(Self::Scalar));
         }
         #[cfg(target_arch = "aarch64")]
-        all.extend(level.as_neon().map(Self::Neon));
-        let _ = level;
-        all.push(Self::Scalar);
+        {
+            all.extend(level.as_neon().map(Self::Neon));
+            all.extend(level.as_neon().map(Self::Scalar));
+        }
+        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+        {
+            let _ = level;
+            all.push(Self::Scalar(Least::new()));
+        }
         all
     }
 
     /// The best that this machine has.
     pub fn best() -> Self {
         Self::all()[0]
+    }
+
+    /// The one of this name, if this machine has it.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::all().into_iter().find(|own| own.name() == name)
     }
 
     /// What it is called.
@@ -70,7 +94,7 @@ impl Instructions {
             Self::Sse2(_) => "sse2",
             #[cfg(target_arch = "aarch64")]
             Self::Neon(_) => "neon",
-            Self::Scalar => "scalar",
+            Self::Scalar(_) => "scalar",
         }
     }
 
@@ -85,7 +109,7 @@ impl Instructions {
             Self::Sse2(simd) => on(Double(simd), job),
             #[cfg(target_arch = "aarch64")]
             Self::Neon(simd) => on(Double(simd), job),
-            Self::Scalar => on(One, job),
+            Self::Scalar(_) => on(One, job),
         }
     }
 }

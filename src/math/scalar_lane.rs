@@ -166,16 +166,12 @@ impl Lanes for One {
         to[0] = x;
     }
     #[inline(always)]
-    fn gather(self, table: &[f64], index: u32) -> f64 {
-        table[(index as usize).min(table.len() - 1)]
-    }
-    #[inline(always)]
     fn lookup(self, table: &[f64; SMALL], index: u32) -> f64 {
-        self.gather(table, index)
+        table[index as usize % SMALL]
     }
     #[inline(always)]
     fn lookup_int(self, table: &[u32; SMALL], index: u32) -> u32 {
-        table[(index as usize).min(table.len() - 1)]
+        table[index as usize % SMALL]
     }
     #[inline(always)]
     fn lane(self, x: f64, _: usize) -> f64 {

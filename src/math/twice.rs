@@ -182,10 +182,6 @@ impl<L: Lanes> Lanes for Twice<L> {
         self.0.store_int(x.1, &mut to[L::COUNT..]);
     }
     #[inline(always)]
-    fn gather(self, table: &[Self::Scalar], index: Self::Int) -> Self::Real {
-        Pair(self.0.gather(table, index.0), self.0.gather(table, index.1))
-    }
-    #[inline(always)]
     fn lookup(self, table: &[Self::Scalar; SMALL], index: Self::Int) -> Self::Real {
         Pair(self.0.lookup(table, index.0), self.0.lookup(table, index.1))
     }

@@ -4,14 +4,18 @@ use glam::DVec3;
 
 use super::PlanError;
 use super::choose::Choices;
-use super::extent::{about_camera, columns, is_similarity, perpendicular, translation};
+use super::extent::{
+    about_camera, columns, is_right_circular, is_similarity, perpendicular, translation,
+};
 use super::occluders::occluders;
 use crate::camera::LaneCamera;
 use crate::integrate::develop::Spectrometer;
+use crate::integrate::list::List;
 use crate::integrate::model::{Checker, Many, Model, ObjectShading, Scatter};
 use crate::integrate::parts::Parts;
 use crate::light::{
-    CubeLight, LaneLight, LightShape, PlanarLight, RectangleLight, SmallLights, SphereLight,
+    CubeLight, CylinderLight, LaneLight, LightShape, PlanarLight, RectangleLight, SmallLights,
+    SphereLight,
 };
 use crate::math::affine::Affine;
 use crate::math::lanes::Scalar;
@@ -28,11 +32,13 @@ use crate::spectrum::grid::{CELLS, Cumulative, SpectrumBank};
 use crate::spectrum::ior::RefractiveIndex;
 use crate::spectrum::observer::spectrum_to_xyz;
 
-/// Most objects that are tested one after the other; beyond, boxes are sorted into a hierarchy.
-/// Measured on clouds of one cross-section over a floor (AVX-512): a ball more in the list costs
-/// 2 to 3 ns a camera path, another shape 3.5, and a hierarchy of 25 objects as much as a list of
-/// about 30 balls or 40 other shapes.
-pub const LARGEST_LIST: usize = 32;
+/// What a list of objects may cost at most; beyond, boxes are sorted into a hierarchy. In the same
+/// unit, a ball costs 1 and another shape 5. Measured on clouds of one cross-section over a floor
+/// (AVX-512): a hierarchy takes as long as a list of about 85 balls, or of 20 objects of which two
+/// thirds are cubes and cylinders.
+pub const LARGEST_LIST: usize = 80;
+/// What a shape that is no ball costs in a list.
+const OTHER: usize = 5;
 
 /// Builds model and spectrometer.
 ///
@@ -59,14 +65,23 @@ pub fn build<T: Scalar>(
         .as_ref()
         .map(|spectrum| builder.spectrum(spectrum));
     let lights = builder.pick();
-    let all = 0..scene.objects.len() as u32;
+    let all: Vec<u32> = (0..scene.objects.len() as u32).collect();
     let occluders = if choices.full {
-        all.collect()
+        all.clone()
     } else {
         let lit: Vec<u32> = lights.iter().map(|light| light.object).collect();
         occluders(scene, &lit, T::ROUNDOFF)
     };
-    let many = builder.bounded.len() > LARGEST_LIST;
+    let parts = Parts::new(&builder.shapes, &builder.shading);
+    let list_costs: usize = builder
+        .bounded
+        .iter()
+        .map(|item| match builder.shapes[item.0 as usize].ball() {
+            Some(_) => 1,
+            None => OTHER,
+        })
+        .sum();
+    let many = list_costs > LARGEST_LIST;
     let model = Model {
         hierarchy: many.then(|| {
             Many::new(
@@ -85,8 +100,9 @@ pub fn build<T: Scalar>(
         ),
         max_depth: scene.image.max_depth.unwrap_or(u32::MAX),
         needs: choices.needs,
-        occluders,
-        parts: Parts::new(&builder.shapes, &builder.shading),
+        list: List::new(all, &builder.shapes, &parts.first),
+        occluders: List::new(occluders, &builder.shapes, &parts.first),
+        parts,
         shapes: builder.shapes,
         implicits: builder.implicits,
         shading: builder.shading,
@@ -185,8 +201,12 @@ impl<T: Scalar> Builder<T> {
         if !inverse.rows.iter().flatten().all(|x| x.is_finite()) {
             return None;
         }
-        self.shapes
-            .push(LaneShape::new(kind, &to_world, &inverse, self.reach));
+        self.shapes.push(LaneShape::new(
+            kind,
+            &to_world,
+            &inverse,
+            START * self.reach,
+        ));
         match &object.shape {
             Shape::Implicit(implicit) => {
                 let lanes = LaneImplicit::new(implicit, &to_world, &inverse).ok()?;
@@ -277,6 +297,15 @@ impl<T: Scalar> Builder<T> {
         self.lights.push((light, power));
     }
 
+    /// About the area, over π, that parallel light falls on; planes alone have no size to tell.
+    fn lit_area(&self) -> f64 {
+        if self.reach > 0.0 {
+            self.reach * self.reach
+        } else {
+            1.0
+        }
+    }
+
     /// A light without a surface.
     fn free_light(&mut self, scene: &Scene, light: &Light) {
         let scalars = |v: DVec3| v.to_array().map(T::from_f64);
@@ -292,7 +321,7 @@ impl<T: Scalar> Builder<T> {
             } => (
                 LightShape::Directional(scalars(-*direction)),
                 irradiance,
-                std::f64::consts::PI * self.reach * self.reach * strength(irradiance),
+                std::f64::consts::PI * self.lit_area() * strength(irradiance),
             ),
         };
         if power > 0.0 {
@@ -323,8 +352,9 @@ impl<T: Scalar> Builder<T> {
                 sum += 0.5 / count + 0.5 * power / total;
                 let end = if i == last { 1.0 } else { sum };
                 light.below = below;
-                // The probability is what the comparison with the *rounded* bounds realises.
-                let next = T::from_f64(end);
+                // Uniform numbers are multiples of the step in either precision: among such bounds
+                // the probability is exactly their distance.
+                let next = T::from_f64((end / PROBABILITY_STEP).round() * PROBABILITY_STEP);
                 light.probability = T::from_f64(next.to_f64() - below.to_f64());
                 below = next;
                 light
@@ -332,6 +362,13 @@ impl<T: Scalar> Builder<T> {
             .collect()
     }
 }
+
+/// How far rays usually start, over the largest coordinate of a bounded object: nearly all points
+/// that a camera sees of an infinite floor are within that.
+const START: f64 = 8.0;
+
+/// Step of the probabilities of lights: that of uniform numbers in single precision, 2⁻²⁴.
+const PROBABILITY_STEP: f64 = 1.0 / (1 << 24) as f64;
 
 /// Whether front and back emit.
 fn sides(sides: Sides) -> [bool; 2] {
@@ -390,6 +427,12 @@ fn area_light<T: Scalar>(
                 LightShape::Cube(CubeLight::new(centre, [a, b, c], normals, emits)),
                 area,
             ))
+        }
+        Shape::Cylinder if is_right_circular(&placement.to_world) => {
+            let (radius, height) = (a.length(), 2.0 * c.length());
+            let area = 2.0 * std::f64::consts::PI * radius * (radius + height);
+            let light = CylinderLight::new(centre, [a, b], c, emits);
+            Some((LightShape::Cylinder(light), area))
         }
         Shape::Sphere | Shape::Cylinder | Shape::Plane | Shape::Implicit(_) => None,
     }

@@ -32,7 +32,10 @@ pub const GAP_SHARE: f64 = 1.0 / 16.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PrecisionReason {
     /// The user said so.
-    Asked,
+    Asked {
+        /// What speaks against it.
+        doubt: Option<Doubt>,
+    },
     /// Hits on implicit surfaces are certified in double.
     Implicit,
     /// The numbers decide.
@@ -41,6 +44,23 @@ pub enum PrecisionReason {
         error: extent::Error,
         /// Smallest gap between objects, if any.
         gap: Option<f64>,
+    },
+}
+
+/// Why single precision would not have been taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Doubt {
+    /// The bound of its error is not small enough.
+    Bound {
+        /// It, beside the pixel.
+        error: extent::Error,
+        /// Smallest gap between objects, if any.
+        gap: Option<f64>,
+    },
+    /// Hits on implicit surfaces are rounded to it, and nobody knows how close their sheets are.
+    Implicit {
+        /// The bound of its error.
+        error: extent::Error,
     },
 }
 
@@ -71,8 +91,15 @@ pub fn choose(scene: &Scene, full: bool) -> Result<Choices, PlanError> {
     let suffices = error.position <= PIXEL_SHARE * error.pixel
         && gap.is_none_or(|gap| error.position <= GAP_SHARE * gap);
     let (precision, precision_reason) = match scene.image.precision {
-        PrecisionChoice::F32 => (Precision::Single, PrecisionReason::Asked),
-        PrecisionChoice::F64 => (Precision::Double, PrecisionReason::Asked),
+        PrecisionChoice::F32 => {
+            let doubt = if needs(scene).implicit {
+                Some(Doubt::Implicit { error })
+            } else {
+                (!suffices).then_some(Doubt::Bound { error, gap })
+            };
+            (Precision::Single, PrecisionReason::Asked { doubt })
+        }
+        PrecisionChoice::F64 => (Precision::Double, PrecisionReason::Asked { doubt: None }),
         PrecisionChoice::Auto if needs(scene).implicit => {
             (Precision::Double, PrecisionReason::Implicit)
         }

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::choose::{GAP_SHARE, PIXEL_SHARE, Precision, PrecisionReason};
+use super::choose::{Doubt, GAP_SHARE, PIXEL_SHARE, Precision, PrecisionReason};
+use super::extent::Error;
 use super::{Plan, Tables};
 use crate::film::pixels::Pixels;
 use crate::integrate::model::{Model, Needs};
@@ -149,6 +150,7 @@ fn strategy<T>(shape: &LightShape<T>) -> &'static str {
         LightShape::Disk(_) | LightShape::Parallelogram(_) => "by area",
         LightShape::Sphere(_) => "by the solid angle of its cone from outside, by area inside",
         LightShape::Cube(_) => "by the area of its visible faces",
+        LightShape::Cylinder(_) => "by the size of its visible parts",
         LightShape::Point(_) | LightShape::Directional(_) => "by its one direction",
     }
 }
@@ -272,7 +274,10 @@ fn precision(plan: &Plan) -> String {
         Precision::Double => "double (f64)",
     };
     let (error, gap) = match plan.choices.precision_reason {
-        PrecisionReason::Asked => return format!("precision: {name}, as asked for"),
+        PrecisionReason::Asked { .. } => {
+            let doubt = doubt(plan).map_or_else(String::new, |doubt| format!("; {doubt}"));
+            return format!("precision: {name}, as asked for{doubt}");
+        }
         PrecisionReason::Implicit => {
             return format!(
                 "precision: {name}: hits on implicit surfaces are proved in double, and rays leave \
@@ -281,6 +286,16 @@ fn precision(plan: &Plan) -> String {
         }
         PrecisionReason::Measured { error, gap } => (error, gap),
     };
+    let verdict = match plan.choices.precision {
+        Precision::Single => "suffices",
+        Precision::Double => "because single does not suffice",
+    };
+    let bound = bound(error, gap);
+    format!("precision: {name} {verdict}: in single, {bound}")
+}
+
+/// How far off positions may be in single precision.
+fn bound(error: Error, gap: Option<f64>) -> String {
     let pixel = error.position / error.pixel;
     let gap = gap.map_or_else(
         || "no two objects have a gap between them".to_owned(),
@@ -289,21 +304,43 @@ fn precision(plan: &Plan) -> String {
             format!("{share:.1e} of the smallest gap, {gap:.3e} (allowed {GAP_SHARE})")
         },
     );
-    let verdict = match plan.choices.precision {
-        Precision::Single => "suffices",
-        Precision::Double => "because single does not suffice",
-    };
     format!(
-        "precision: {name} {verdict}: in single, positions are off by at most {:.1e} = {pixel:.1e} \
-         of a pixel's width there (allowed {PIXEL_SHARE}); {gap}",
+        "positions are off by at most {:.1e} = {pixel:.1e} of a pixel's width there (allowed \
+         {PIXEL_SHARE}); {gap}",
         error.position
     )
 }
 
+/// What speaks against the precision that was asked for, if anything does.
+pub fn doubt(plan: &Plan) -> Option<String> {
+    let PrecisionReason::Asked { doubt: Some(doubt) } = plan.choices.precision_reason else {
+        return None;
+    };
+    Some(match doubt {
+        Doubt::Bound { error, gap } => format!(
+            "double would have been taken, because in single {}",
+            bound(error, gap)
+        ),
+        Doubt::Implicit { error } => format!(
+            "double would have been taken: hits on implicit surfaces are proved in double and then \
+             rounded to single, which puts them off by up to {:.1e}, so that sheets closer than {:.1e} \
+             may be taken one for the other",
+            error.position,
+            error.position / GAP_SHARE
+        ),
+    })
+}
+
 fn intersection(scene: &Scene, plan: &Plan) -> String {
     let (hierarchy, occluders) = match &plan.tables {
-        Tables::Single(tables) => (tables.0.hierarchy.is_some(), tables.0.occluders.len()),
-        Tables::Double(tables) => (tables.0.hierarchy.is_some(), tables.0.occluders.len()),
+        Tables::Single(tables) => (
+            tables.0.hierarchy.is_some(),
+            tables.0.occluders.objects.len(),
+        ),
+        Tables::Double(tables) => (
+            tables.0.hierarchy.is_some(),
+            tables.0.occluders.objects.len(),
+        ),
     };
     let count = scene.objects.len();
     let mut text = format!(

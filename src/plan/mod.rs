@@ -7,6 +7,7 @@ pub mod build;
 pub mod choose;
 pub mod explain;
 pub mod extent;
+mod faces;
 pub mod needs;
 pub mod occluders;
 
@@ -70,5 +71,13 @@ impl Plan {
             tables,
             left_out: needs::left_out(scene),
         })
+    }
+
+    /// Takes other random numbers: the plan is then that of the scene with this seed.
+    pub fn reseed(&mut self, seed: u64) {
+        match &mut self.tables {
+            Tables::Single(scene) => scene.0.sequence = scene.0.sequence.reseeded(seed),
+            Tables::Double(scene) => scene.0.sequence = scene.0.sequence.reseeded(seed),
+        }
     }
 }

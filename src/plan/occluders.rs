@@ -13,6 +13,10 @@ use crate::scene::{Light, Scene, Shape, Surface};
 /// Points relative to a plane: the range of their signed distances.
 type Range = [f64; 2];
 
+/// Most objects for which it pays to look at each pair; among more, a flat one that hides nothing is
+/// one of many.
+const MOST: usize = 1 << 10;
+
 /// The objects that shadow rays have to be tested against, in order; `lit` are the objects whose
 /// light is sampled, `roundoff` that of the coordinates of hits.
 pub fn occluders(scene: &Scene, lit: &[u32], roundoff: f64) -> Vec<u32> {
@@ -32,6 +36,9 @@ pub fn occluders(scene: &Scene, lit: &[u32], roundoff: f64) -> Vec<u32> {
     let hides = |k: usize| {
         if scene.lights.is_empty() && lit.iter().all(|&light| light as usize == k) {
             return false;
+        }
+        if placed.len() > MOST {
+            return true;
         }
         let Some((normal, height)) = plane(&scene.objects[k].value.shape, &placed[k]) else {
             return true;

@@ -1,4 +1,4 @@
-//! Spectral pictures: radiance summed by pixel and bin of wavelength.
+//! Spectral pictures: radiance summed by pixel, replicate and bin of wavelength.
 //!
 //! A sample of a path stands for the cell of the wavelength grid it lies in ([`grid`]); its
 //! radiance goes to the bins in the proportions in which they share the cell, so that whatever is
@@ -9,7 +9,9 @@
 
 use std::sync::Arc;
 
+use crate::film::pixels::Estimate;
 use crate::math::lanes::Scalar;
+use crate::sample::sequence::Replicates;
 use crate::spectrum::grid::{CELLS, Cumulative, LONGEST, SHORTEST};
 
 /// Neighbouring bins of equal width.
@@ -90,35 +92,59 @@ impl BinGrid {
     }
 }
 
-/// Sums by pixel and bin.
+/// Sums by pixel, replicate and bin.
 #[derive(Debug, Clone)]
 pub struct Bins {
     grid: Arc<BinGrid>,
-    sums: Vec<f64>,
+    replicates: Replicates,
+    slots: usize,
+    sums: Vec<[f64; 1]>,
 }
 
 impl Bins {
-    /// Zero sums for this many pixels.
-    pub fn new(pixels: usize, grid: Arc<BinGrid>) -> Self {
-        let sums = vec![0.0; pixels * grid.centres.len()];
-        Self { grid, sums }
+    /// Zero sums for this many pixels of at most `samples` samples each.
+    pub fn new(pixels: usize, grid: Arc<BinGrid>, replicates: Replicates, samples: u32) -> Self {
+        let slots = replicates.count(samples) as usize;
+        let sums = vec![[0.0]; pixels * slots * grid.centres.len()];
+        Self {
+            grid,
+            replicates,
+            slots,
+            sums,
+        }
+    }
+
+    /// Bytes of the sums of a pixel of at most `samples` samples in one bin.
+    pub fn bytes_per_pixel(replicates: Replicates, samples: u32) -> usize {
+        replicates.count(samples) as usize * size_of::<[f64; 1]>()
     }
 
     /// Adds a sample of a pixel: radiance at C wavelengths, whose cells are `row`, `row` + 4096/C
     /// …; a pixel's samples must come in order.
-    pub fn add<T: Scalar, const C: usize>(&mut self, pixel: usize, radiance: &[T; C], row: u32) {
+    pub fn add<T: Scalar, const C: usize>(
+        &mut self,
+        pixel: usize,
+        sample: u32,
+        radiance: &[T; C],
+        row: u32,
+    ) {
         let count = self.grid.centres.len();
-        let sums = &mut self.sums[pixel * count..][..count];
+        let (replicate, _) = self.replicates.place(sample);
+        let place = pixel * self.slots + replicate as usize;
+        let sums = &mut self.sums[place * count..][..count];
         for (i, radiance) in radiance.iter().enumerate() {
             let radiance = radiance.to_f64() / C as f64;
             for (bin, share) in self.grid.shares(i * (CELLS / C) + row as usize) {
-                sums[*bin as usize] += radiance * share;
+                sums[*bin as usize][0] += radiance * share;
             }
         }
     }
 
-    /// Mean radiance of a pixel in a bin after `samples` samples, W·m⁻²·sr⁻¹·nm⁻¹.
-    pub fn mean(&self, pixel: usize, bin: usize, samples: u32) -> f64 {
-        self.sums[pixel * self.grid.centres.len() + bin] / f64::from(samples)
+    /// Radiance of a pixel in a bin after `samples` samples, W·m⁻²·sr⁻¹·nm⁻¹.
+    pub fn estimate(&self, pixel: usize, bin: usize, samples: u32) -> Estimate<1> {
+        let count = self.grid.centres.len();
+        let sums = &self.sums[pixel * self.slots * count..][..self.slots * count];
+        let of_bin = sums[bin..].iter().step_by(count);
+        Estimate::new(self.replicates, samples, of_bin, |radiance| radiance)
     }
 }

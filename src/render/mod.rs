@@ -1,12 +1,16 @@
 //! A render: tiles over threads, passes over the whole image, and when to stop.
 
 pub mod bins;
+pub mod blocks;
 pub mod dispatch;
+pub mod goal;
+pub mod memory;
 pub mod pass;
 pub mod replay;
 pub mod session;
+pub mod target;
 pub mod tile;
 
-pub use dispatch::{Instructions, instructions};
+pub use crate::math::instructions::Instructions;
 pub use replay::replay;
 pub use session::{Progress, Rendered, Request, render, render_binned};

@@ -2,10 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::dispatch::{Instructions, Runs};
+use super::dispatch::Runs;
 use super::tile::{Tile, Worker};
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::model::Model;
+use crate::math::instructions::Instructions;
 use crate::plan::{Plan, Tables};
 
 /// Adds samples `from .. to` of every pixel of every tile, on the threads of the current pool.

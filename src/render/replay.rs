@@ -1,10 +1,11 @@
 //! One path again.
 
-use super::dispatch::{Instructions, Runs};
+use super::dispatch::Runs;
 use crate::integrate::chunk::{Request, Requests, Workspace};
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::model::Model;
 use crate::integrate::replay::Replayed;
+use crate::math::instructions::Instructions;
 use crate::math::lanes::Scalar;
 use crate::plan::{Plan, Tables};
 use crate::spectrum::grid::{CELLS, Cumulative};

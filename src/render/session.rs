@@ -6,12 +6,12 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use super::bins::{BinGrid, Bins};
-use super::dispatch::Instructions;
 use super::pass;
 use super::tile::{Tile, Window};
 use crate::film::pixels::{Estimate, to_rgb};
 use crate::integrate::chunk;
 use crate::integrate::intersect::Rungs;
+use crate::math::instructions::Instructions;
 use crate::plan::Plan;
 
 /// What to render besides what the plan says.
@@ -77,7 +77,12 @@ pub fn render_binned(
     progress: &mut dyn Progress,
 ) -> Rendered {
     let tiles = request.window.tiles().into_iter().map(|window| Tile {
-        bins: Some(Bins::new(window.pixels(), Arc::clone(grid))),
+        bins: Some(Bins::new(
+            window.pixels(),
+            Arc::clone(grid),
+            plan.choices.replicates,
+            request.samples,
+        )),
         ..Tile::new(window, plan.choices.replicates, request.samples)
     });
     run(plan, request, tiles.collect(), progress)
@@ -168,22 +173,37 @@ impl Rendered {
         self.estimates(|xyz| xyz)
     }
 
-    /// Every pixel's mean radiance in a bin, row by row; `None` where bins were not asked for.
-    pub fn bin(&self, bin: usize) -> Option<Vec<f64>> {
+    /// Every pixel's estimate of radiance in a bin, row by row; `None` where bins were not asked
+    /// for.
+    pub fn bin(&self, bin: usize) -> Option<Vec<Estimate<1>>> {
         let wanted = self.tiles.iter().all(|tile| tile.bins.is_some());
-        let mean = |tile: &Tile, pixel: usize| {
+        let estimate = |tile: &Tile, pixel: usize| {
             let bins = tile.bins.as_ref();
-            bins.map_or(f64::NAN, |bins| bins.mean(pixel, bin, self.samples))
+            bins.map_or(Estimate::UNKNOWN, |bins| {
+                bins.estimate(pixel, bin, self.samples)
+            })
         };
-        wanted.then(|| self.image(f64::NAN, mean))
+        wanted.then(|| self.image(Estimate::UNKNOWN, estimate))
+    }
+
+    /// Luminance of every pixel, row by row, in each of its replicates.
+    pub fn replicate_luminances(&self) -> Vec<Vec<f64>> {
+        let mut image = vec![Vec::new(); self.window.pixels()];
+        self.place(|index, tile, pixel| {
+            let means = tile.pixels.replicate_means(pixel, self.samples);
+            image[index] = means.map(|xyz| xyz[1]).collect();
+        });
+        image
+    }
+
+    /// Replicates that every pixel has.
+    pub fn replicates(&self) -> u32 {
+        let tile = self.tiles.first();
+        tile.map_or(0, |tile| tile.pixels.replicates(self.samples))
     }
 
     fn estimates(&self, channels: impl Fn([f64; 3]) -> [f64; 3] + Copy) -> Vec<Estimate> {
-        let empty = Estimate {
-            mean: [0.0; 3],
-            standard_error: [f64::NAN; 3],
-        };
-        self.image(empty, |tile, pixel| {
+        self.image(Estimate::UNKNOWN, |tile, pixel| {
             tile.pixels.estimate(pixel, self.samples, channels)
         })
     }
@@ -191,16 +211,21 @@ impl Rendered {
     /// A value for each pixel, row by row.
     fn image<V: Copy>(&self, empty: V, value: impl Fn(&Tile, usize) -> V) -> Vec<V> {
         let mut image = vec![empty; self.window.pixels()];
+        self.place(|index, tile, own| image[index] = value(tile, own));
+        image
+    }
+
+    /// Visits every pixel: its place in the image, row by row, its tile, and its place in that.
+    fn place(&self, mut visit: impl FnMut(usize, &Tile, usize)) {
         let width = self.window.width() as usize;
         for tile in &self.tiles {
             let tile_width = tile.window.width() as usize;
             for pixel in 0..tile.window.pixels() {
                 let x = (tile.window.x0 - self.window.x0) as usize + pixel % tile_width;
                 let y = (tile.window.y0 - self.window.y0) as usize + pixel / tile_width;
-                image[y * width + x] = value(tile, pixel);
+                visit(y * width + x, tile, pixel);
             }
         }
-        image
     }
 
     /// Mean luminance; pixels are scrambled independently, so their squared standard errors add.

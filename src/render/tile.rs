@@ -3,12 +3,13 @@
 use std::ops::Range;
 
 use super::bins::Bins;
-use super::dispatch::{Instructions, Runs};
+use super::dispatch::Runs;
 use crate::film::pixels::{Pixels, is_finite};
 use crate::integrate::chunk::{self, CHUNK, Workspace};
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::intersect::Rungs;
 use crate::integrate::model::Model;
+use crate::math::instructions::Instructions;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Replicates;
 
@@ -160,9 +161,10 @@ impl Tile {
             }
             if let Some(bins) = &mut self.bins {
                 let rows = &workspace.rows;
-                for (slot, xyz) in (slot..end).zip(values) {
+                for ((slot, sample), xyz) in (slot..end).zip(run.samples.clone()).zip(values) {
                     if is_finite(xyz) {
-                        bins.add(pixel, &rows.paths[slot].radiance, rows.row[slot]);
+                        let radiance = &rows.paths[slot].radiance;
+                        bins.add(pixel, sample, radiance, rows.row[slot]);
                     }
                 }
             }

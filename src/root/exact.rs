@@ -24,8 +24,12 @@ pub struct Point {
 impl Point {
     /// An f64, which must be finite.
     pub fn of(x: f64) -> Self {
-        let exact = Exact::of(x);
-        let (mantissa, exponent) = exact.parts();
+        Self::dyadic(&Exact::of(x))
+    }
+
+    /// A dyadic number.
+    pub fn dyadic(x: &Exact) -> Self {
+        let (mantissa, exponent) = x.parts();
         let shift = exponent.unsigned_abs();
         if exponent >= 0 {
             Self {
@@ -97,10 +101,10 @@ pub struct ExactRoot {
 
 /// A polynomial, lowest power first, without leading zeros.
 #[derive(Debug, Clone, PartialEq)]
-struct Polynomial(Vec<BigInt>);
+pub(super) struct Polynomial(Vec<BigInt>);
 
 impl Polynomial {
-    fn new(mut coefficients: Vec<BigInt>) -> Self {
+    pub(super) fn new(mut coefficients: Vec<BigInt>) -> Self {
         while coefficients.last().is_some_and(Zero::is_zero) {
             coefficients.pop();
         }
@@ -111,12 +115,12 @@ impl Polynomial {
         self.0.is_empty()
     }
 
-    fn degree(&self) -> usize {
+    pub(super) fn degree(&self) -> usize {
         self.0.len().saturating_sub(1)
     }
 
     /// Without the powers of two that its coefficients have in common.
-    fn without_twos(mut self) -> Self {
+    pub(super) fn without_twos(mut self) -> Self {
         let twos = self.0.iter().filter_map(BigInt::trailing_zeros).min();
         for c in &mut self.0 {
             *c >>= twos.unwrap_or(0);
@@ -155,7 +159,7 @@ impl Polynomial {
         sum
     }
 
-    fn sign_at(&self, point: &Point) -> Sign {
+    pub(super) fn sign_at(&self, point: &Point) -> Sign {
         self.at(point).sign()
     }
 
@@ -208,7 +212,7 @@ impl Polynomial {
 }
 
 /// A Sturm chain.
-struct Chain(Vec<Polynomial>);
+pub(super) struct Chain(Vec<Polynomial>);
 
 impl Chain {
     /// Remainders with changed signs, divided by what subresultants have in common (Collins 1967,
@@ -257,8 +261,45 @@ impl Chain {
     }
 
     /// Distinct roots in (low, high]; for a square-free polynomial.
-    fn count(&self, low: &Point, high: &Point) -> usize {
+    pub(super) fn count(&self, low: &Point, high: &Point) -> usize {
         self.changes(low).saturating_sub(self.changes(high))
+    }
+}
+
+/// A polynomial whose roots are all simple, and what was divided out.
+pub(super) struct SquareFree {
+    /// It.
+    pub simple: Polynomial,
+    /// Its Sturm chain.
+    pub chain: Chain,
+    /// The divisor: every root of the original as often as it was one, less one.
+    pub common: Polynomial,
+}
+
+impl SquareFree {
+    /// The square-free part of a polynomial; `None` where it is a constant.
+    pub fn of(coefficients: &[BigInt]) -> Option<Self> {
+        let whole = Polynomial::new(coefficients.to_vec()).without_twos();
+        if whole.degree() == 0 {
+            return None;
+        }
+        let chain = Chain::new(&whole);
+        let common = chain.last().clone();
+        if common.degree() == 0 {
+            return Some(Self {
+                simple: whole,
+                chain,
+                common,
+            });
+        }
+        let common = common.primitive();
+        let simple = whole.quotient(&common);
+        let chain = Chain::new(&simple);
+        Some(Self {
+            simple,
+            chain,
+            common,
+        })
     }
 }
 
@@ -273,24 +314,11 @@ pub fn first_root(
     if order != Ordering::Less && !point {
         return None;
     }
-    let whole = Polynomial::new(coefficients.to_vec()).without_twos();
-    if whole.degree() == 0 {
-        return None;
-    }
-    let chain = Chain::new(&whole);
-    let common = chain.last().clone();
-    let common = if common.degree() > 0 {
-        common.primitive()
-    } else {
-        common
-    };
-    let (simple, chain) = if common.degree() == 0 {
-        (whole, chain)
-    } else {
-        let simple = whole.quotient(&common);
-        let chain = Chain::new(&simple);
-        (simple, chain)
-    };
+    let SquareFree {
+        simple,
+        chain,
+        common,
+    } = SquareFree::of(coefficients)?;
     if stretch.low_counts && simple.sign_at(&stretch.low) == Sign::NoSign {
         let multiplicity = multiplicity(common, &stretch.low, &stretch.low);
         return Some(exactly(&stretch.low, multiplicity));

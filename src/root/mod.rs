@@ -8,6 +8,7 @@ pub mod bernstein;
 pub mod departure;
 pub mod exact;
 pub mod interval;
+pub mod sharpen;
 pub mod sign_change;
 pub mod sphere_trace;
 

@@ -24,9 +24,9 @@ pub enum Slot {
     Wavelength = 1,
     /// Position on the lens.
     Lens = 2,
-    /// Which lobe of the surface.
+    /// Which lobe of the surface, or which of many lights.
     Choice = 3,
-    /// Which light, and which point of it.
+    /// Which of few lights, and which point of it.
     Light = 4,
     /// Direction of the scattered ray.
     Bsdf = 5,

@@ -189,6 +189,14 @@ impl Sequence {
         }
     }
 
+    /// The same points under other scrambles.
+    pub fn reseeded(self, seed: u64) -> Self {
+        Self {
+            keys: Keys::new(seed),
+            ..self
+        }
+    }
+
     /// Identity of samples of pixels.
     #[inline(always)]
     pub fn identity<L: Lanes>(

@@ -19,6 +19,7 @@ pub(super) struct Look {
     pub image: Image,
     pub materials: Vec<Named<Material>>,
     pub environment: Option<Spectrum>,
+    pub truth: Option<Spectrum>,
 }
 
 /// A scene but for its source.
@@ -38,6 +39,7 @@ const TOP_KEYS: &[&str] = &[
     "object",
     "light",
     "environment",
+    "truth",
     "panel",
 ];
 
@@ -73,6 +75,9 @@ pub(super) fn scene(report: &Report, base_dir: &Path, root: &Table) -> Option<Pa
     let image = top.required("image", "an [image] table", |_, node| image(report, node));
     let materials = materials::read(&spectra, top.get("materials"));
     let environment = spectra::environment(&spectra, root);
+    let truth = top.optional("truth", None, |what, node| {
+        spectra.spectrum(what, node, Role::Emission).map(Some)
+    });
     // Without a readable table of materials every use of one would be a further complaint.
     let hidden = materials.is_none() || (top.get("materials").is_none() && top.misspelt());
     let materials = materials.unwrap_or_default();
@@ -85,6 +90,7 @@ pub(super) fn scene(report: &Report, base_dir: &Path, root: &Table) -> Option<Pa
             image: image?,
             materials: materials.checked?,
             environment: environment?,
+            truth: truth?,
         },
         objects: objects?,
         lights: lights?,

@@ -139,6 +139,7 @@ pub fn parse(
             objects: parts.objects,
             lights: parts.lights,
             environment: parts.look.environment,
+            truth: parts.look.truth,
         }),
         (Some(complaint), _) => Err(invalid(&origins, complaint)),
         (None, None) => Err(invalid(
@@ -215,7 +216,7 @@ struct Panel {
 }
 
 /// Tables a panel may lay over the file's own.
-const TABLES: &[&str] = &["camera", "materials", "environment"];
+const TABLES: &[&str] = &["camera", "materials", "environment", "truth"];
 
 /// Takes the panels out of the document.
 fn panels(report: &Report, root: &mut Table) -> Vec<Panel> {

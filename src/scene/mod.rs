@@ -48,6 +48,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Radiance that arrives from everywhere at infinity; absent means black.
     pub environment: Option<Spectrum>,
+    /// Radiance that every pixel is known to have, where the answer is known in closed form.
+    pub truth: Option<Spectrum>,
 }
 
 /// The scene file's path and text (after `--set` and the panel were laid over it, the text is

@@ -4,12 +4,12 @@ use std::path::Path;
 use std::time::Duration;
 
 use etalon::plan::Plan;
-use etalon::render::instructions;
+use etalon::render::Instructions;
 use etalon::render::session::{Progress, Rendered, Request, render as run};
 use etalon::render::tile::Window;
 use etalon::scene::{Overrides, parse};
+use etalon::stats::{Estimate, family, student};
 use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::scenes::Text;
 
@@ -29,8 +29,15 @@ const SLOPE: f64 = 1.2;
 /// Error over the wanted one from which a measurement is repeated, and the last round of all.
 const SHARP: f64 = 1.5;
 const LAST_ROUND: u64 = 5;
-/// Most samples a pixel to begin with.
+/// Most samples a pixel to begin with, at the usual sharpness.
 const MOST: f64 = 131_072.0;
+
+/// How many times smaller the errors are to be than usual: `ETALON_TRUTH_SHARPNESS`, for a run that
+/// takes its time (10 takes some hundred times as long).
+pub fn sharpness() -> f64 {
+    let asked = std::env::var("ETALON_TRUTH_SHARPNESS").ok();
+    asked.map_or(1.0, |text| text.parse().unwrap())
+}
 
 /// A number to be measured: (mean of a channel + offset) × factor.
 #[derive(Debug, Clone)]
@@ -120,14 +127,8 @@ impl Measurement {
         if self.standard_error == 0.0 {
             return 0.0;
         }
-        two_sided(distance / self.standard_error, self.freedom)
+        student::two_sided(distance / self.standard_error, self.freedom)
     }
-}
-
-/// P(|T| > t) for Student's t.
-pub fn two_sided(t: f64, freedom: f64) -> f64 {
-    let student = StudentsT::new(0.0, 1.0, freedom).unwrap();
-    2.0 * student.cdf(-t)
 }
 
 struct Silent;
@@ -155,31 +156,19 @@ pub fn render(text: &Text, spp: u32, seed: u64, window: Option<Window>) -> Rende
         window: window.unwrap_or(whole),
         samples: spp,
         time: None,
-        instructions: instructions(None).unwrap(),
+        instructions: Instructions::best(),
     };
     let rendered = run(&plan, &request, &mut Silent);
     assert_eq!(rendered.not_a_number, 0, "{file}");
     rendered
 }
 
-/// Mean of a channel over some pixels, with its standard error from their two replicates.
-///
-/// Pixels are scrambled independently, so their squared errors vᵢ add; each has one degree of
-/// freedom, so E vᵢ² = 3 σᵢ⁴, and Welch's and Satterthwaite's (Σ σᵢ²)²/Σ σᵢ⁴ is 3 (Σ vᵢ)²/Σ vᵢ².
-pub fn mean(estimates: &[[f64; 2]]) -> (f64, f64, f64) {
-    let count = estimates.len() as f64;
-    let (mut sum, mut squares, mut fourths) = (0.0, 0.0, 0.0);
-    for [value, error] in estimates {
-        sum += value;
-        squares += error * error;
-        fourths += error.powi(4);
-    }
-    let freedom = if fourths > 0.0 {
-        (3.0 * squares * squares / fourths).clamp(1.0, count)
-    } else {
-        1.0
-    };
-    (sum / count, squares.sqrt() / count, freedom)
+/// Mean of a channel over some pixels, with its standard error from their two replicates: pixels
+/// are scrambled independently, and each variance has one degree of freedom.
+pub fn mean(estimates: &[[f64; 2]]) -> Estimate {
+    let values: Vec<f64> = estimates.iter().map(|[value, _]| *value).collect();
+    let variances: Vec<f64> = estimates.iter().map(|[_, error]| error * error).collect();
+    Estimate::mean_of(&values, &variances, 1.0)
 }
 
 fn measure_at(case: &Case, spp: u32, seed: u64) -> Measurement {
@@ -189,11 +178,11 @@ fn measure_at(case: &Case, spp: u32, seed: u64) -> Measurement {
         .iter()
         .map(|e| [e.mean[case.channel], e.standard_error[case.channel]])
         .collect();
-    let (value, error, freedom) = mean(&estimates);
+    let mean = mean(&estimates);
     Measurement {
-        value: (value + case.offset) * case.factor,
-        standard_error: error * case.factor.abs(),
-        freedom,
+        value: (mean.value + case.offset) * case.factor,
+        standard_error: mean.standard_error * case.factor.abs(),
+        freedom: mean.freedom,
         samples: u64::from(spp) * estimates.len() as u64,
     }
 }
@@ -202,13 +191,15 @@ fn measure_at(case: &Case, spp: u32, seed: u64) -> Measurement {
 /// favours no outcome. Where few samples see the light the pilots can be wrong about the error;
 /// what is still not sharp is thrown away as well and measured afresh with four times as many.
 pub fn measure(case: &Case, seed: u64) -> Measurement {
-    let goal = (case.wanted * case.truth).abs();
+    let goal = (case.wanted * case.truth).abs() / sharpness();
+    // Points are counted in 24 bits.
+    let most = (MOST * sharpness() * sharpness()).min(f64::from(1 << 23));
     let mut spp = PILOT;
     for pilot in 0..2 {
         let m = measure_at(case, spp, seed + pilot);
         let wanted = f64::from(spp) * (m.standard_error / goal).powf(2.0 / SLOPE);
         let last = pilot == 1 || wanted <= f64::from(16 * spp);
-        spp = (wanted.clamp(f64::from(PILOT), MOST) as u32).next_power_of_two();
+        spp = (wanted.clamp(f64::from(PILOT), most) as u32).next_power_of_two();
         if last {
             break;
         }
@@ -217,7 +208,7 @@ pub fn measure(case: &Case, seed: u64) -> Measurement {
     let mut round = 2;
     loop {
         let m = measure_at(case, spp, seed + round);
-        if m.standard_error <= SHARP * goal || round == LAST_ROUND {
+        if m.standard_error <= SHARP * goal || round == LAST_ROUND || spp > 1 << 22 {
             return m;
         }
         spp *= 4;
@@ -239,7 +230,7 @@ pub fn measure_all(cases: Vec<Case>) -> Vec<(Case, Measurement)> {
 
 /// The numbers that Holm's step-down procedure (Holm 1979) rejects.
 pub fn judge<'a>(numbers: impl Iterator<Item = (&'a Measurement, f64, &'a Case)>) -> Vec<String> {
-    let mut all: Vec<(f64, String)> = numbers
+    let all: Vec<(f64, String)> = numbers
         .map(|(m, truth, case)| {
             let words = format!(
                 "{}: {} ± {} instead of {truth}",
@@ -248,16 +239,13 @@ pub fn judge<'a>(numbers: impl Iterator<Item = (&'a Measurement, f64, &'a Case)>
             (m.p_value(truth, case), words)
         })
         .collect();
-    holm(&mut all)
+    holm(&all)
 }
 
 /// Holm's procedure for (p-value, description).
-pub fn holm(all: &mut [(f64, String)]) -> Vec<String> {
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let count = all.len();
-    all.iter()
-        .enumerate()
-        .take_while(|(i, (p, _))| *p <= FALSE_ALARM / (count - i) as f64)
-        .map(|(_, (p, words))| format!("{words} (p = {p:.1e})"))
-        .collect()
+pub fn holm(all: &[(f64, String)]) -> Vec<String> {
+    let p_values: Vec<f64> = all.iter().map(|(p, _)| *p).collect();
+    let rejected = family::holm(&p_values, FALSE_ALARM);
+    let words = |index: usize| format!("{} (p = {:.1e})", all[index].1, all[index].0);
+    rejected.into_iter().map(words).collect()
 }

@@ -4,9 +4,10 @@ use glam::DVec3;
 
 use super::furnaces::{between, two_bodies};
 use super::glass::{bow_scene, descartes, fresnel_dielectric};
-use super::harness::{Case, holm, judge, mean, measure_all, render, two_sided};
+use super::harness::{Case, holm, judge, mean, measure_all, render};
 use super::scenes::Text;
 use super::{number, truth};
+use etalon::stats::Estimate;
 
 /// Every pixel is zero, exactly.
 fn assert_black(name: &str, text: &Text) {
@@ -155,14 +156,11 @@ fn still_life(scale: f64, shift: DVec3, albedo: f64) -> Text {
     .environment(0.5)
 }
 
-/// Value, standard error and degrees of freedom.
-type Block = (f64, f64, f64);
-
 /// Edge of the blocks of pixels that are compared.
 const BLOCK: usize = 4;
 
 /// Means of blocks of pixels.
-fn blocks(text: &Text, seed: u64) -> Vec<Block> {
+fn blocks(text: &Text, seed: u64) -> Vec<Estimate> {
     let estimates = render(text, 2048, seed, None).xyz();
     let width = text.size[0] as usize;
     let across = width / BLOCK;
@@ -179,19 +177,16 @@ fn blocks(text: &Text, seed: u64) -> Vec<Block> {
 }
 
 /// Blocks that differ, by Welch's test and Holm's procedure.
-fn different(pictures: &[(String, Vec<Block>)], first: &[Block]) -> Vec<String> {
+fn different(pictures: &[(String, Vec<Estimate>)], first: &[Estimate]) -> Vec<String> {
     let mut all = Vec::new();
     for (name, picture) in pictures {
         for (block, (a, b)) in picture.iter().zip(first).enumerate() {
-            let (va, vb) = (a.1 * a.1, b.1 * b.1);
-            let variance = va + vb;
-            let freedom = variance * variance / (va * va / a.2 + vb * vb / b.2);
-            let p = two_sided((a.0 - b.0).abs() / variance.sqrt(), freedom);
-            let words = format!("{name}, block {block}: {} and {}", a.0, b.0);
+            let p = a.minus(b).p_value(0.0, 0.0);
+            let words = format!("{name}, block {block}: {} and {}", a.value, b.value);
             all.push((p, words));
         }
     }
-    holm(&mut all)
+    holm(&all)
 }
 
 #[test]

@@ -14,7 +14,7 @@
 
 mod yardstick;
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -25,18 +25,17 @@ use etalon::scene::{FinderChoice, Implicit};
 use etalon::shape::Query;
 use etalon::shape::implicit::baseline::SteppingFinder;
 use etalon::shape::implicit::certified::{Certified, Packet, WIDTH, Wish, Workspace};
-use etalon::shape::implicit::expression::{Parameter, parse, parse_constant};
+use etalon::shape::implicit::expression::Expression;
 use etalon::shape::implicit::named;
 use etalon::shape::lanes::LaneRay;
 use etalon::shape::lanes::implicit::{LaneImplicit, StartSign};
+use etalon::study::finders::{CLASSES, Oracle};
 use fearless_simd::Level;
 use glam::DVec3;
 use yardstick::Yardstick;
 
 /// Runs over the rays; the best counts.
 const RUNS: usize = 9;
-
-type Row = HashMap<String, String>;
 
 #[derive(Clone, Copy)]
 struct Ray {
@@ -54,10 +53,10 @@ struct Surface {
 }
 
 impl Surface {
-    fn new(expression: &str, parameters: &[Parameter], half: f64) -> Self {
+    fn new(field: Arc<Expression>, half: f64) -> Self {
         let implicit = Implicit {
             name: None,
-            field: Arc::new(parse(expression, parameters).unwrap()),
+            field,
             inside: [DVec3::splat(-half), DVec3::splat(half)],
             closed: false,
             finder: FinderChoice::SignChange,
@@ -87,29 +86,6 @@ fn main() {
         }
         _ => oracle(),
     }
-}
-
-fn rows(text: &str) -> Vec<Row> {
-    let mut reader = csv::ReaderBuilder::new()
-        .flexible(true)
-        .from_reader(text.as_bytes());
-    reader.deserialize().map(Result::unwrap).collect()
-}
-
-fn surfaces() -> BTreeMap<String, Surface> {
-    let text = include_str!("../../tests/data/implicit_shapes.csv");
-    let surface = |line: &str| {
-        let fields: Vec<&str> = line.split(';').collect();
-        let (expression, value) = fields[3].split_once(", T=").unwrap_or((fields[3], "1"));
-        let parameters = [Parameter {
-            name: "T".to_owned(),
-            value: parse_constant(value, &[]).unwrap(),
-        }];
-        let half = fields[1].parse().unwrap();
-        let surface = Surface::new(expression, &parameters, half);
-        (fields[0].to_owned(), surface)
-    };
-    text.lines().skip(1).map(surface).collect()
 }
 
 /// Seconds of the best run.
@@ -235,21 +211,20 @@ fn times(surface: &Surface, rays: &[Ray]) -> [f64; 5] {
 }
 
 fn oracle() {
-    let table = rows(include_str!("../../tests/data/implicit.csv"));
+    let oracle = Oracle::new(None, None).unwrap();
     let mut sums: BTreeMap<(String, String), ([f64; 5], usize)> = BTreeMap::new();
-    for (name, surface) in &surfaces() {
-        let mut classes: BTreeMap<&str, Vec<Ray>> = BTreeMap::new();
-        for row in table.iter().filter(|row| row["shape"] == *name) {
-            let number = |key: &str| -> f64 { row[key].parse().unwrap() };
-            let vector = |keys: [&str; 3]| DVec3::from_array(keys.map(number));
-            classes.entry(row["class"].as_str()).or_default().push(Ray {
-                origin: vector(["ox", "oy", "oz"]),
-                direction: vector(["dx", "dy", "dz"]),
-                t_min: number("tmin"),
-            });
-        }
+    for shape in &oracle.shapes {
+        let surface = &Surface::new(Arc::clone(&shape.field), shape.half_width);
         let degree = format!("degree {:2}", surface.degree);
-        for (class, rays) in classes {
+        for class in CLASSES {
+            let rays = oracle.rays_of(&shape.name, class);
+            let rays: Vec<Ray> = rays
+                .map(|row| Ray {
+                    origin: row.ray.origin,
+                    direction: row.ray.direction,
+                    t_min: row.t_min,
+                })
+                .collect();
             let times = times(surface, &rays);
             for key in [
                 (class, "all degrees"),
@@ -280,7 +255,7 @@ fn oracle() {
 fn view(name: &str, size: usize, distance: f64, file: &str) {
     let named = named::find(name).unwrap();
     let half = named.half_width;
-    let surface = Surface::new(named.expression, &[], half);
+    let surface = Surface::new(Arc::new(named.field(&[]).unwrap()), half);
     let far = 4.0 * half * distance;
     let place = |i: usize| (2 * i + 1) as f64 / size as f64 - 1.0;
     let pixel = |k: usize| Ray {

@@ -15,7 +15,7 @@ use super::super::values::Crop;
 use super::{is_stream, layers, memory, probe};
 
 /// Samples a pixel at most where only the time is limited: as many as the samplers' points.
-const MOST_SAMPLES: u32 = 1 << 24;
+pub const MOST_SAMPLES: u32 = 1 << 24;
 
 /// One picture to render.
 pub struct Job {
@@ -37,7 +37,9 @@ impl Job {
     /// Reads and plans.
     pub fn new(arguments: &Render, panel: Option<&str>) -> Result<Self, CommandError> {
         let mut scene = scene::load(&arguments.scene.scene, &arguments.overrides(panel))?;
-        if arguments.time.is_some() && !arguments.sets_spp() {
+        // With a wanted error pilots choose the samples, before the time counts.
+        let open = arguments.time.is_some() && arguments.target_error.is_none();
+        if open && !arguments.sets_spp() {
             if scene.image.sampler == SamplerKind::Stratified {
                 return Err(CommandError::TimeForStrata);
             }

@@ -5,19 +5,16 @@
 
 use std::sync::Arc;
 
-use etalon::camera::centre_ray;
+use etalon::film::pixels::Estimate;
 use etalon::film::spectral::Bin;
 use etalon::film::{Channel, Picture, names};
 use etalon::render::Rendered;
 use etalon::render::bins::BinGrid;
-use etalon::shape::Query;
-use etalon::shape::implicit::certified::Workspace;
+use etalon::render::target::{FirstHit, first_hits};
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::super::args::Render;
 use super::super::error::CommandError;
-use super::super::trace::{Decided, First, FirstHit, Target};
 use super::super::values::{Layer, SpectralRange};
 use super::job::Job;
 
@@ -59,7 +56,7 @@ pub fn push(
     let wanted = |layer: Layer| arguments.layers.contains(&layer);
     let kinds = [Layer::Depth, Layer::Normal, Layer::Object, Layer::Material];
     if kinds.into_iter().any(wanted) {
-        let hits = first_hits(job)?;
+        let hits = first_hits(&job.scene, job.window)?;
         if wanted(Layer::Depth) {
             let depth =
                 |hit: &Option<FirstHit>| hit.as_ref().map_or(f64::INFINITY, |hit| hit.t) as f32;
@@ -95,37 +92,24 @@ fn push_spectral(picture: &mut Picture, job: &Job, rendered: &Rendered) {
     let Some(grid) = &job.bins else {
         return;
     };
+    let replicates = job.plan.choices.replicates.count(rendered.samples);
     let bin = |(index, &nm): (usize, &f64)| {
-        let values = rendered.bin(index)?;
+        let estimates = rendered.bin(index)?;
+        let single = |value: fn(&Estimate<1>) -> f64| {
+            let values = estimates.iter().map(|e| value(e) as f32);
+            values.collect::<Vec<_>>()
+        };
         Some(Bin {
             nm,
             sensitivity: Vec::new(),
-            values: values.into_iter().map(|v| v as f32).collect(),
+            values: single(|e| e.mean[0]),
+            standard_errors: if replicates > 1 {
+                single(|e| e.standard_error[0])
+            } else {
+                Vec::new()
+            },
         })
     };
     let bins = grid.centres().iter().enumerate().filter_map(bin).collect();
     picture.push_spectral(bins);
-}
-
-/// The first surface on the ray through the centre of each pixel of the window, row by row.
-fn first_hits(job: &Job) -> Result<Vec<Option<FirstHit>>, CommandError> {
-    let target = Target::new(&job.scene)?;
-    let window = job.window;
-    let row = |y: u32| (window.x0..window.x1).map(move |x| [x, y]);
-    let pixels: Vec<[u32; 2]> = (window.y0..window.y1).flat_map(row).collect();
-    Ok(pixels
-        .into_par_iter()
-        .map(|pixel| {
-            let query = Query {
-                ray: centre_ray(&job.scene.camera, job.scene.image.size, pixel),
-                t_min: 0.0,
-                t_max: f64::INFINITY,
-            };
-            let mut workspace = Workspace::default();
-            match target.first_hit(&query, &mut workspace, &mut Decided::default()) {
-                First::Hit(hit) => Some(hit),
-                First::Nothing | First::Undecided(_) => None,
-            }
-        })
-        .collect())
 }

@@ -1,14 +1,14 @@
 //! Whether a picture fits into memory, before it is begun.
 
 use etalon::film::pixels::{Estimate, Pixels};
+use etalon::render::bins::Bins;
+use etalon::render::memory::available;
 
 use super::super::args::Render;
 use super::super::error::CommandError;
 use super::job::Job;
 use super::layers;
 
-/// Assumed where the system does not tell how much there is: what any machine has.
-const UNKNOWN: u64 = 1 << 32;
 /// R, G, B, their standard errors, and the count of samples.
 const CHANNELS: usize = 7;
 
@@ -16,9 +16,10 @@ const CHANNELS: usize = 7;
 /// file, of which the writer makes a copy.
 fn bytes_per_pixel(arguments: &Render, job: &Job) -> usize {
     let bins = job.bins.as_ref().map_or(0, |grid| grid.centres().len());
-    let pixel = Pixels::bytes_per_pixel(job.plan.choices.replicates, job.scene.image.spp);
-    let sums = pixel + bins * size_of::<f64>();
-    let channels = CHANNELS + layers::channel_count(&arguments.layers) + bins;
+    let (replicates, samples) = (job.plan.choices.replicates, job.scene.image.spp);
+    let pixel = Pixels::bytes_per_pixel(replicates, samples);
+    let sums = pixel + bins * Bins::bytes_per_pixel(replicates, samples);
+    let channels = CHANNELS + layers::channel_count(&arguments.layers) + 2 * bins;
     sums + size_of::<Estimate>() + 2 * channels * size_of::<f32>()
 }
 
@@ -29,17 +30,9 @@ fn bytes_per_pixel(arguments: &Render, job: &Job) -> usize {
 pub fn check(arguments: &Render, job: &Job) -> Result<(), CommandError> {
     let pixels = u64::from(job.window.width()) * u64::from(job.window.height());
     let needed = pixels.saturating_mul(bytes_per_pixel(arguments, job) as u64);
-    let available = available().unwrap_or(UNKNOWN);
+    let available = available();
     if needed > available {
         return Err(CommandError::Memory { needed, available });
     }
     Ok(())
-}
-
-/// Bytes that can be had without swapping, as Linux estimates them; `None` elsewhere.
-fn available() -> Option<u64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
-    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kibibytes * 1024)
 }

@@ -112,32 +112,20 @@ fn further(
         let [width, height] = job.scene.image.size;
         text("crop", format!("{x0},{y0},{x1},{y1} of {width}x{height}"));
     }
-    text("instructions", instruction_name(instructions).to_owned());
+    text("instructions", instructions.name().to_owned());
     text("rungs", rungs(outcome, job));
     let planned = job.scene.image.spp;
     if rendered.samples < planned && job.scene.image.sampler == SamplerKind::Stratified {
         text("sppPlanned", planned.to_string());
     }
+    if let Some(error) = arguments.target_error {
+        let attribute = ("targetError".to_owned(), Attribute::Double(error));
+        picture.attributes.push(attribute);
+    }
     if job.scene.image.max_depth.is_some() {
         let name = "energyCutStandardError".to_owned();
         let error = Attribute::Double(rendered.cut_off().standard_error);
         picture.attributes.push((name, error));
-    }
-}
-
-/// The name of an instruction set on the command line.
-fn instruction_name(instructions: Instructions) -> &'static str {
-    match instructions {
-        #[cfg(target_arch = "x86_64")]
-        Instructions::Avx512(_) => "avx512",
-        #[cfg(target_arch = "x86_64")]
-        Instructions::Avx2(_) => "avx2",
-        #[cfg(target_arch = "x86_64")]
-        Instructions::Sse2(_) => "sse2",
-        #[cfg(target_arch = "aarch64")]
-        Instructions::Neon(_) => "neon",
-        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-        Instructions::Fallback(_) => "fallback",
     }
 }
 

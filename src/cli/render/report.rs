@@ -3,9 +3,11 @@
 use std::fmt::Write as _;
 
 use etalon::render::Rendered;
+use etalon::render::goal::{Chosen, Goal, Target, reached};
 use etalon::scene::SamplerKind;
 
 use super::super::args::Render;
+use super::super::quoted;
 use super::job::Job;
 
 /// A finished render and how it ended.
@@ -14,6 +16,8 @@ pub struct Outcome<'a> {
     pub rendered: &'a Rendered,
     /// Whether the user ended it.
     pub interrupted: bool,
+    /// The wanted error, how its samples were chosen, and the seconds that took.
+    pub goal: Option<(Goal, (Chosen, f64))>,
 }
 
 impl Outcome<'_> {
@@ -46,6 +50,24 @@ pub fn lines(arguments: &Render, job: &Job, outcome: &Outcome<'_>) -> String {
             "; cut off by max_depth {} ± {}",
             percent(share.value),
             percent(share.standard_error)
+        );
+    }
+    if let Some((goal, (chosen, seconds))) = &outcome.goal {
+        let _ = write!(
+            text,
+            "; {} {} reached, {} asked for{}; pilots of {} spp in {seconds:.2} s chose the samples",
+            match goal.target {
+                Target::Image => "error of the mean",
+                Target::Block => "error of the worst block",
+            },
+            percent(reached(rendered, goal.target)),
+            percent(goal.error),
+            if chosen.short {
+                ", which takes more samples than can be had"
+            } else {
+                ""
+            },
+            chosen.spent,
         );
     }
     let _ = write!(text, "; {} NaN", rendered.not_a_number);
@@ -112,18 +134,9 @@ fn replay(arguments: &Render, job: &Job, rendered: &Rendered) -> Option<String> 
 /// included.
 pub fn settings(arguments: &Render, job: &Job) -> Vec<(String, String)> {
     let mut settings = arguments.overrides(None).set;
-    if arguments.time.is_some() && !arguments.sets_spp() {
+    let planned = arguments.time.is_some() && !arguments.sets_spp();
+    if planned || arguments.target_error.is_some() {
         settings.push(("image.spp".to_owned(), job.scene.image.spp.to_string()));
     }
     settings
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_./=,:+@%".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
 }

@@ -11,7 +11,8 @@ use crate::math::double_double::DoubleDouble;
 use crate::math::number::{Number, power_of_two};
 use crate::scene::Implicit;
 use crate::shape::implicit::evaluate::Field;
-use crate::shape::implicit::normal;
+use crate::shape::implicit::tape::Tape;
+use crate::shape::implicit::{bounded, normal};
 use crate::shape::ladder::{Ladder, ScaledRay};
 use crate::shape::{Query, Ray, SingularMatrix};
 
@@ -88,6 +89,27 @@ impl SteppingFinder {
         let ray = ScaledRay::new(ray);
         let line = self.local(&ray);
         self.normal(line.at(t * power_of_two(ray.exponent())), line.direction)
+    }
+
+    /// The unit outward normal, in the world, of a hit within this far of t, if f64 is certain of it.
+    pub fn certain_normal(&self, ray: &Ray, t: f64, within: f64) -> Option<DVec3> {
+        let scaled = ScaledRay::new(ray);
+        let line = self.ladder.double_double.local(&scaled);
+        let at = scaled.scaled_t::<DoubleDouble>(t);
+        let over = |x: &DoubleDouble| x.divided_by(&line.scale).to_f64();
+        let point = [0, 1, 2].map(|i| over(&line.origin[i].plus(&line.direction[i].times(&at))));
+        let fastest = line.direction.iter().map(|d| over(d).abs());
+        // The rounding of a point from double-double is that of its last digit.
+        let moved = fastest.fold(0.0, f64::max) * within * power_of_two(scaled.exponent());
+        let (gradient, error) = bounded::gradient(&self.field, point.into(), 2.0 * moved);
+        // Written so that NaN fails.
+        let certain = error <= gradient.length() * normal::SHARP;
+        self.world_normal(gradient).filter(|_| certain)
+    }
+
+    /// The operations of the field.
+    pub fn tape(&self) -> &Tape {
+        self.field.tape()
     }
 
     /// The point, in the world, of a hit at t. From a far origin o + t d is off by the rounding of its
@@ -170,7 +192,11 @@ impl SteppingFinder {
     /// Normals go by the inverse transpose; the adjugate has the sign that keeps them outward.
     fn normal(&self, point: DVec3, direction: DVec3) -> Option<DVec3> {
         let size = (self.inside[1] - self.inside[0]).max_element();
-        let gradient = normal::outward(&self.field, point, direction, size);
+        self.world_normal(normal::outward(&self.field, point, direction, size))
+    }
+
+    /// The unit vector in the world that a gradient in object coordinates becomes.
+    pub fn world_normal(&self, gradient: DVec3) -> Option<DVec3> {
         let rows = self.ladder.double_double.adjugate.each_ref();
         let rows = rows.map(|row| DVec3::from_array(row.each_ref().map(Number::to_f64)));
         let normal = rows[0] * gradient.x + rows[1] * gradient.y + rows[2] * gradient.z;

@@ -39,11 +39,13 @@ impl Mul for Bounded {
     }
 }
 
-/// The gradient of a field at a point and the length of its error.
-pub fn gradient(field: &Field, point: DVec3) -> (DVec3, f64) {
+/// The gradient of a field at a point and the length of its error, where each coordinate may be off
+/// by `blur` and its own rounding.
+pub fn gradient(field: &Field, point: DVec3, blur: f64) -> (DVec3, f64) {
     let numbers = Numbers {
         constants: field.constants(),
         point,
+        blur,
     };
     let found = field.tape().evaluate(&Gradients(&numbers), &mut Vec::new());
     let Some(WithGradient { gradient, .. }) = found else {
@@ -58,13 +60,14 @@ pub fn gradient(field: &Field, point: DVec3) -> (DVec3, f64) {
 struct Numbers<'a> {
     constants: &'a [f64],
     point: DVec3,
+    blur: f64,
 }
 
 impl Algebra for Numbers<'_> {
     type Value = Bounded;
 
     fn coordinate(&self, axis: usize) -> Bounded {
-        Bounded::rounded(self.point[axis], 0.0)
+        Bounded::rounded(self.point[axis], self.blur)
     }
 
     fn constant(&self, index: usize, _: &BigRational) -> Bounded {

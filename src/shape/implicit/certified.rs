@@ -9,6 +9,7 @@
 
 mod exact;
 mod kernel;
+mod normal;
 mod outer;
 mod place;
 mod stream;
@@ -21,6 +22,7 @@ pub use place::{Certified, Limits};
 use crate::math::lanes::{Double, Lanes};
 use crate::math::number::{binary_exponent, power_of_two};
 use crate::math::words::{Pair, Plain, Row};
+use crate::root::exact::ExactRoot;
 use crate::shape::Ray;
 use exact::ExactStart;
 
@@ -172,6 +174,11 @@ impl Certified {
             }
         }
         answers
+    }
+
+    /// The first hit of a ray by exact arithmetic alone, as the truth that others are judged by.
+    pub fn exactly(&self, ray: &Ray, limits: [f64; 2]) -> Option<ExactRoot> {
+        exact::first_hit(self, ray, limits, ExactStart::Free, f64::NAN)
     }
 
     /// A lane that double-double leaves undecided.

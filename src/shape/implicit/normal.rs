@@ -12,6 +12,14 @@
 //! 2. where nothing changes sign beside it (a field that is a square), the gradient at points
 //!    displaced *back* along the ray, where it points to the side that the ray comes from;
 //! 3. where all of these vanish, the direction that the ray comes from.
+//!
+//! Close to such points the gradient is small but not noise, and turns so fast that the rounding of
+//! the hit's own coordinates decides where it points. Where an enclosure of a polynomial's hit is known
+//! (as for `trace`), a gradient that is not certain to [`SHARP`] is taken at the exact root instead: t
+//! narrowed to some 2⁻²⁴⁴ of the clipped ray and everything else exact
+//! ([`Certified::gradient_direction`](super::certified::Certified::gradient_direction)). At both ends
+//! of that enclosure it has the same direction, or else the point is singular for all that could
+//! matter, and the rule above holds.
 
 use glam::DVec3;
 
@@ -21,6 +29,9 @@ use super::evaluate::Field;
 /// A gradient gives a direction where its error is below this part of it: an angle of a
 /// milliradian, less than a picture shows.
 const NOISE: f64 = 1.0 / 1024.0;
+/// The same where an enclosure of the hit is known: an angle that six printed digits do not show. Most
+/// errors are far below, for the bound adds up what hardly ever goes the same way.
+pub const SHARP: f64 = 1.0 / (1u64 << 22) as f64;
 /// First distance to look beside a point, relative to the size of the clip box: half the digits,
 /// so that a root's own rounding, 2⁻⁵², is as small against it as it is against 1.
 const FIRST: f64 = 1.0 / 67_108_864.0;
@@ -46,7 +57,7 @@ pub fn outward(field: &Field, point: DVec3, direction: DVec3, size: f64) -> DVec
 }
 
 fn of_gradient(field: &Field, point: DVec3) -> Option<DVec3> {
-    let (gradient, error) = bounded::gradient(field, point);
+    let (gradient, error) = bounded::gradient(field, point, 0.0);
     // Written so that NaN fails.
     let clear = error <= gradient.length() * NOISE && error.is_finite();
     unit(gradient).filter(|_| clear)

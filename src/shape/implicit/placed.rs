@@ -7,7 +7,7 @@ use super::certified::{Answers, Certified, Packet, Tier, Wish, Workspace};
 use super::enclosed_packet::EnclosedPacket;
 use crate::math::affine::Affine;
 use crate::scene::{FinderChoice, Implicit};
-use crate::shape::{Query, SingularMatrix};
+use crate::shape::{Query, Ray, SingularMatrix};
 
 use glam::DVec3;
 
@@ -207,6 +207,24 @@ impl PlacedImplicit {
         workspace: &mut Workspace,
         tally: &mut ImplicitTally,
     ) -> ImplicitAnswer {
+        match self.first_crossing(query, workspace, tally) {
+            ImplicitAnswer::Found(hit) if hit.tier.is_some() => {
+                ImplicitAnswer::Found(ImplicitHit {
+                    normal: self.normal(&query.ray, hit.t, hit.enclosure),
+                    ..hit
+                })
+            }
+            answer => answer,
+        }
+    }
+
+    /// The same without the normal, which takes longer than all else where it has to be exact.
+    pub fn first_crossing(
+        &self,
+        query: &Query,
+        workspace: &mut Workspace,
+        tally: &mut ImplicitTally,
+    ) -> ImplicitAnswer {
         if !query.ray.is_valid() {
             return ImplicitAnswer::Absent;
         }
@@ -233,11 +251,12 @@ impl PlacedImplicit {
         if answers.found & 1 == 1 {
             let t = answers.t[0];
             let multiplicity = answers.multiplicity[0];
+            let enclosure = [answers.low[0], answers.high[0]];
             ImplicitAnswer::Found(ImplicitHit {
                 t,
                 point: self.stepping.point_at(&query.ray, t),
-                normal: self.stepping.normal_at(&query.ray, t),
-                enclosure: [answers.low[0], answers.high[0]],
+                normal: None,
+                enclosure,
                 multiplicity: (multiplicity > 0).then_some(multiplicity),
                 tier: Some(answers.tiers[0]),
             })
@@ -246,5 +265,23 @@ impl PlacedImplicit {
         } else {
             ImplicitAnswer::Undecided
         }
+    }
+
+    /// The unit outward normal of a hit, as sharp as its enclosure where that determines it, else at
+    /// the exact root, else by the rule for singular points.
+    fn normal(&self, ray: &Ray, t: f64, enclosure: [f64; 2]) -> Option<DVec3> {
+        let within = (t - enclosure[0]).max(enclosure[1] - t);
+        let certain = self.stepping.certain_normal(ray, t, within);
+        let exact = || match &self.finder {
+            Finder::Polynomial { certified, .. } => {
+                let tape = self.stepping.tape();
+                let gradient = certified.gradient_direction(tape, ray, enclosure)?;
+                self.stepping.world_normal(gradient)
+            }
+            _ => None,
+        };
+        certain
+            .or_else(exact)
+            .or_else(|| self.stepping.normal_at(ray, t))
     }
 }

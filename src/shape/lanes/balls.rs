@@ -1,12 +1,20 @@
-//! Several balls, which one ray asks together: lanes are balls.
+//! Several balls: one ray asks them together, its lanes balls; or each lane's ray asks those that it
+//! comes near.
 
-use super::sphere::{Asked, Ball, ball_span};
+use super::sphere::{Asked, Ball, Foot, ball_span};
 use super::{LaneRay, LaneShape, Span};
-use crate::math::lanes::{Lanes, Scalar};
+use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
+use crate::math::lookup::SMALL;
 use crate::math::vec3::Vec3;
 
 /// Most balls of a group.
-pub const MOST: usize = 16;
+pub const MOST: usize = SMALL;
+
+/// Bound of the error of the squared distance in [`Balls::near`], in units of u (max|o| + max|c|)²:
+/// with s = |o| + |c| ≤ √3 (max|o| + max|c|), nine roundings of sums up to s² and 9u s of error in g/|d|,
+/// squared, make 27u s², the rounding of the centre another 4u s²; 3 · 31 and a quarter more for
+/// this number's own rounding.
+const FOOT_ERROR: f64 = 116.0;
 
 /// The numbers of up to [`MOST`] balls by column.
 #[derive(Debug, Clone)]
@@ -19,6 +27,11 @@ pub struct Balls<T> {
     reach: [T; MOST],
     clear_squared: [T; MOST],
     clear: [T; MOST],
+    /// −[`Ball::clear`].
+    behind: [T; MOST],
+    centre_squared: [T; MOST],
+    /// Largest magnitude of a centre's coordinate.
+    largest: T,
     /// Which objects they are; places without a ball repeat the last one.
     pub objects: [u32; MOST],
     /// How many there are.
@@ -44,9 +57,21 @@ impl<T: Scalar> Balls<T> {
             radius_squared: column(&|b| b.radius_squared),
             offset_error: column(&|b| b.offset_error),
             curvature: column(&|b| b.curvature),
-            reach: column(&|b| b.reach),
+            reach: [balls.iter().fold(balls[last].reach, |least, b| {
+                if b.reach < least { b.reach } else { least }
+            }); MOST],
             clear_squared: column(&|b| b.clear_squared),
             clear: column(&|b| b.clear),
+            behind: column(&|b| T::from_f64(-b.clear.to_f64())),
+            centre_squared: column(&|b| {
+                T::from_f64(b.centre.iter().map(|x| x.to_f64() * x.to_f64()).sum())
+            }),
+            largest: balls
+                .iter()
+                .flat_map(|b| b.centre)
+                .fold(T::default(), |largest, x| {
+                    largest.larger(T::from_f64(x.to_f64().abs()))
+                }),
             objects: std::array::from_fn(|i| objects[i.min(last)]),
             count: objects.len(),
         })
@@ -57,6 +82,97 @@ impl<T: Scalar> Balls<T> {
     pub fn present<L: Lanes<Scalar = T>>(&self, l: L, from: usize) -> L::Mask {
         let first = |count: usize| ((1u64 << count) - 1) as u32;
         l.mask_from_bits((first(self.count) >> from) & first(L::COUNT))
+    }
+
+    /// The places of balls that each lane's ray may meet before `limit`, place i as bit i: not those
+    /// that it surely passes, leaves behind or does not reach, nor those of the objects `left_out`.
+    ///
+    /// As `Foot::is_apart`, in fewer operations and less sharply: with g = (o − c) · d, the foot is at
+    /// −g/|d|² and its squared distance from the centre |o|² − 2 o · c + |c|² − g²/|d|².
+    #[inline(always)]
+    pub fn near<L: Lanes<Scalar = T>, const N: usize>(
+        &self,
+        l: L,
+        ray: &LaneRay<L>,
+        left_out: [L::Int; N],
+        limit: L::Real,
+    ) -> L::Int {
+        let origin = ray.origin;
+        let back = -ray.direction;
+        let ahead = origin.dot(ray.direction);
+        let against = -ray.inverse_square;
+        let twice = origin.scale(l.real(-2.0));
+        let widest = ray.extent + l.splat(self.largest);
+        let error = widest * widest * l.real(FOOT_ERROR * <T as Scalar>::ROUNDOFF);
+        let outside = origin.length_squared() - error;
+        let [x, y, z] = &self.centre;
+        let mut near = l.int(0);
+        for place in 0..self.count {
+            let (x, y, z) = (l.splat(x[place]), l.splat(y[place]), l.splat(z[place]));
+            let behind = z.mul_add(back.z, y.mul_add(back.y, x.mul_add(back.x, ahead)));
+            let foot_t = behind * against;
+            let squared = outside + l.splat(self.centre_squared[place]);
+            let squared = z.mul_add(twice.z, y.mul_add(twice.y, x.mul_add(twice.x, squared)));
+            let squared = behind.mul_add(foot_t, squared);
+            let clear = l.splat(self.clear[place]);
+            let apart = squared.gt(l.splat(self.clear_squared[place]))
+                | foot_t.lt(l.splat(self.behind[place]))
+                | foot_t.gt(limit + clear);
+            near = l.select_int(apart, near, near | l.int(1 << place));
+        }
+        let unusual = ray.extent.gt(l.splat(self.reach[0]));
+        if unusual.any() {
+            near = l.select_int(unusual, self.near_from_afar(l, ray, limit), near);
+        }
+        for place in 0..self.count {
+            let object = l.int(self.objects[place]);
+            let mut out = l.mask(false);
+            for left_out in &left_out {
+                out = out | left_out.same(object);
+            }
+            near = l.select_int(out, near & l.int(!(1 << place)), near);
+        }
+        near
+    }
+
+    /// The same for rays from farther away than the bounds of [`Foot::is_apart`] hold.
+    #[inline(never)]
+    fn near_from_afar<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        ray: &LaneRay<L>,
+        limit: L::Real,
+    ) -> L::Int {
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let mut near = l.int(0);
+                for place in 0..self.count {
+                    let ball = Same { balls: self, place };
+                    let span = Foot::new(ray, ball.centre(l)).span(l, &ball, ray);
+                    let behind = span.far.high.lt(l.real(0.0));
+                    let apart = span.miss | behind | span.near.low.gt(limit);
+                    near = l.select_int(apart, near, near | l.int(1 << place));
+                }
+                near
+            },
+        )
+    }
+
+    /// Takes one place out of each lane's set of places, which must not be empty.
+    #[inline(always)]
+    pub fn take_place<L: Lanes>(l: L, places: &mut L::Int) -> L::Int {
+        let lowest = *places & l.int(0).minus(*places);
+        *places = *places ^ lowest;
+        let (_, exponent) = l.split_exponent(l.to_real(lowest));
+        l.truncate(exponent)
+    }
+
+    /// Where each lane's ray meets the ball at its place.
+    #[inline(always)]
+    pub fn span_of<L: Lanes<Scalar = T>>(&self, l: L, place: L::Int, ray: &LaneRay<L>) -> Span<L> {
+        let ball = Own { balls: self, place };
+        Foot::new(ray, ball.centre(l)).span(l, &ball, ray)
     }
 
     /// Where the ray, the same in all lanes, meets the balls from place `from` on, one a lane, as
@@ -80,31 +196,47 @@ struct From<'a, T> {
     from: usize,
 }
 
-macro_rules! numbers {
-    ($($name:ident),*) => {
+/// All lanes ask the ball at one place.
+struct Same<'a, T> {
+    balls: &'a Balls<T>,
+    place: usize,
+}
+
+/// Each lane asks the ball at its own place.
+struct Own<'a, L: Lanes> {
+    balls: &'a Balls<L::Scalar>,
+    place: L::Int,
+}
+
+macro_rules! asked {
+    ($kind:ty, |$l:ident, $self:ident, $column:ident| $value:expr) => {
+        impl<L: Lanes> Asked<L> for $kind {
+            #[inline(always)]
+            fn centre(&$self, $l: L) -> Vec3<L::Real> {
+                let [x, y, z] = &$self.balls.centre;
+                let [x, y, z] = [
+                    { let $column = x; $value },
+                    { let $column = y; $value },
+                    { let $column = z; $value },
+                ];
+                Vec3::new(x, y, z)
+            }
+            asked!(@ |$l, $self, $column| $value, radius radius_squared offset_error curvature reach clear_squared clear);
+        }
+    };
+    (@ |$l:ident, $self:ident, $column:ident| $value:expr, $($name:ident)*) => {
         $(
             #[inline(always)]
-            fn $name(&self, l: L) -> L::Real {
-                l.load(&self.balls.$name[self.from..])
+            fn $name(&$self, $l: L) -> L::Real {
+                let $column = &$self.balls.$name;
+                $value
             }
         )*
     };
 }
 
-impl<L: Lanes> Asked<L> for From<'_, L::Scalar> {
-    #[inline(always)]
-    fn centre(&self, l: L) -> Vec3<L::Real> {
-        let [x, y, z] = &self.balls.centre;
-        let from = self.from;
-        Vec3::new(l.load(&x[from..]), l.load(&y[from..]), l.load(&z[from..]))
-    }
-    numbers!(
-        radius,
-        radius_squared,
-        offset_error,
-        curvature,
-        reach,
-        clear_squared,
-        clear
-    );
-}
+asked!(From<'_, L::Scalar>, |l, self, column| l
+    .load(&column[self.from..]));
+asked!(Same<'_, L::Scalar>, |l, self, column| l
+    .splat(column[self.place]));
+asked!(Own<'_, L>, |l, self, column| l.lookup(column, self.place));

@@ -46,14 +46,21 @@ impl<T: Scalar> LaneField<T> {
         values.unwrap_or_else(|| [l.real(f64::NAN); W])
     }
 
-    /// Its gradient; not finite where that is undefined.
+    /// Its value and its gradient; not finite where that is undefined.
     #[inline(always)]
-    pub fn gradient<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> Vec3<L::Real> {
+    pub fn with_gradient<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        p: Vec3<L::Real>,
+    ) -> (L::Real, Vec3<L::Real>) {
         let packet = self.at(l, [p]);
         let found = self.tape.evaluate(&Gradients(&packet), &mut Vec::new());
-        let gradient = found.map_or([None; 3], |WithGradient { gradient, .. }| gradient);
+        let Some(WithGradient { value, gradient }) = found else {
+            let nothing = l.real(f64::NAN);
+            return (nothing, Vec3::new(nothing, nothing, nothing));
+        };
         let [x, y, z] = gradient.map(|d| d.map_or(l.real(0.0), |[d]| d));
-        Vec3::new(x, y, z)
+        (value[0], Vec3::new(x, y, z))
     }
 
     #[inline(always)]

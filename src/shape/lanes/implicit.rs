@@ -34,6 +34,8 @@ pub struct LaneImplicit<T> {
     half: [T; 3],
     steps: u32,
     inverse: Rows<T>,
+    /// 16 unit roundoffs of a world coordinate of 1, as a length in object coordinates.
+    rounding: T,
     finder: Finder,
     level: Level,
 }
@@ -68,6 +70,8 @@ impl<T: Scalar> LaneImplicit<T> {
         let inside = implicit.inside;
         let centre = (inside[0] + inside[1]) / 2.0;
         let half = (inside[1] - inside[0]) / 2.0;
+        let row_sum = |row: &[f64; 4]| row[0].abs() + row[1].abs() + row[2].abs();
+        let largest_row = inverse.rows.iter().map(row_sum).fold(0.0, f64::max);
         Ok(Self {
             field: LaneField::new(&implicit.field.tape),
             scalar: Field::new(&implicit.field.tape),
@@ -76,6 +80,7 @@ impl<T: Scalar> LaneImplicit<T> {
             half: half.to_array().map(T::from_f64),
             steps: implicit.steps,
             inverse: Rows::from_f64(&inverse.rows),
+            rounding: T::from_f64(16.0 * T::ROUNDOFF * largest_row),
             finder: Finder::new(implicit, to_world)?,
             level: Level::new(),
         })
@@ -112,16 +117,44 @@ impl<T: Scalar> LaneImplicit<T> {
     }
 
     /// Outward normals at object points that are met in these directions: the gradient, of any
-    /// length; where it vanishes, the unit normal that [`normal::outward`] finds.
+    /// length; where it vanishes, the unit normal that [`normal::outward`] finds. And the steps that
+    /// take points onto the surface which lie off it for having come from afar.
+    ///
+    /// A point p = o + t d is off by roundings of |o| and |t d|, at most 16 u `reach` in each coordinate
+    /// with u the unit roundoff and `reach` the sum of both (as for the start of a ray, see
+    /// [`Packet::roundoff`]); a ray that leaves it is taken to start within 16 u `extent`, with `extent`
+    /// the largest of the point's own coordinates. A Newton step along the gradient that is longer
+    /// than half of the latter and within the former is one that this rounding explains.
     #[inline(always)]
-    pub fn normal<L: Lanes<Scalar = T>>(
+    pub fn surface<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         p: Vec3<L::Real>,
         direction: Vec3<L::Real>,
+        [extent, reach]: [L::Real; 2],
+        here: L::Mask,
+    ) -> (Vec3<L::Real>, Vec3<L::Real>) {
+        let (value, gradient) = self.field.with_gradient(l, p);
+        let normal = self.or_found(l, gradient, p, direction, here);
+        let step = gradient.scale(value / gradient.length_squared());
+        let rounding = l.splat(self.rounding);
+        let length = step.max_abs();
+        let explained = length.gt(extent * rounding * l.real(0.5)) & length.le(reach * rounding);
+        let nothing = l.real(0.0);
+        let nothing = Vec3::new(nothing, nothing, nothing);
+        (normal, Vec3::select(l, explained, step, nothing))
+    }
+
+    /// Gradients that are there; for the others, the unit normal that [`normal::outward`] finds.
+    #[inline(always)]
+    fn or_found<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        mut gradient: Vec3<L::Real>,
+        p: Vec3<L::Real>,
+        direction: Vec3<L::Real>,
         here: L::Mask,
     ) -> Vec3<L::Real> {
-        let mut gradient = self.field.gradient(l, p);
         let square = gradient.length_squared();
         let defined = square.gt(l.real(0.0)) & square.lt(l.real(f64::INFINITY));
         let mut missing = (here & !defined).bits();

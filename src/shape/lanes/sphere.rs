@@ -167,9 +167,7 @@ fn ellipsoid_span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>
     }
 }
 
-/// The same about the centre in world units, for a ball. Canonical coordinates would be those about
-/// the centre over r, so that the bounds above, times r or r², hold with E r = 6u (max|o| + |c| + r),
-/// D r = 6u, and q = D r, where 64q² is less than u.
+/// The same about the centre in world units, for a ball.
 ///
 /// Packets that surely pass the ball, leave it behind or end before it are let go by bounds that
 /// hold for all usual rays.
@@ -181,39 +179,75 @@ pub fn ball_span<L: Lanes>(
     asked: L::Mask,
     limit: L::Real,
 ) -> Span<L> {
-    let u = <L::Scalar as Scalar>::ROUNDOFF;
-    let o = ray.origin - ball.centre(l);
-    let foot_t = -(o.dot(ray.direction) * ray.inverse_square);
-    let foot = o.along(ray.direction, foot_t);
-    let squared = foot.length_squared();
-    let clear = ball.clear(l);
-    let apart = squared.gt(ball.clear_squared(l)) | foot_t.lt(-clear) | foot_t.gt(limit + clear);
-    let apart = apart & ray.extent.le(ball.reach(l));
-    let nowhere = Enclosure::about(foot_t, l.real(0.0));
-    let mut span = Span {
+    let foot = Foot::new(ray, ball.centre(l));
+    let apart = foot.is_apart(l, ball, limit) & ray.extent.le(ball.reach(l));
+    if (asked & !apart).any() {
+        let span = foot.span(l, ball, ray);
+        return Span {
+            miss: span.miss | apart,
+            hit: span.hit & !apart,
+            ..span
+        };
+    }
+    let nowhere = Enclosure::about(foot.t, l.real(0.0));
+    Span {
         near: nowhere,
         far: nowhere,
         hit: l.mask(false),
         miss: apart,
         parts: [l.int(0); 2],
-    };
-    if !(asked & !apart).any() {
-        return span;
     }
-    let radius_squared = ball.radius_squared(l);
-    let c = radius_squared - squared;
-    let unit = l.real(6.5 * u);
-    let e = (foot_t.abs() + ray.extent).mul_add(unit, ball.offset_error(l));
-    let relative = e.mul_add(ball.curvature(l), l.real(9.0 * u));
-    let c_error = (e * e).mul_add(l.real(16.0), relative * squared.max(radius_squared));
-    span.miss = apart | c.lt(-c_error);
-    span.hit = c.gt(c_error) & !apart;
-    let half = (c.max(l.real(0.0)) * ray.inverse_square).sqrt();
-    let along = ball.radius(l).mul_add(l.real(40.0 * u), e * l.real(4.0));
-    let error = (foot_t.abs() + half).mul_add(l.real(9.0 * u), c_error / half + along);
-    span.near = Enclosure::about(foot_t - half, error);
-    span.far = Enclosure::about(foot_t + half, error);
-    span
+}
+
+/// The point of a line that is closest to a ball's centre.
+pub struct Foot<L: Lanes> {
+    /// Its place on the line.
+    t: L::Real,
+    /// Its squared distance from the centre.
+    squared: L::Real,
+}
+
+impl<L: Lanes> Foot<L> {
+    #[inline(always)]
+    pub fn new(ray: &LaneRay<L>, centre: Vec3<L::Real>) -> Self {
+        let o = ray.origin - centre;
+        let t = -(o.dot(ray.direction) * ray.inverse_square);
+        let squared = o.along(ray.direction, t).length_squared();
+        Self { t, squared }
+    }
+
+    /// Whether the ray surely passes the ball, leaves it behind or ends before it, if it starts
+    /// within the ball's reach.
+    #[inline(always)]
+    pub fn is_apart(&self, l: L, ball: &impl Asked<L>, limit: L::Real) -> L::Mask {
+        let clear = ball.clear(l);
+        self.squared.gt(ball.clear_squared(l)) | self.t.lt(-clear) | self.t.gt(limit + clear)
+    }
+
+    /// Where the line meets the ball. Canonical coordinates would be those about the centre over r,
+    /// so that the bounds of [`ellipsoid_span`], times r or r², hold with E r = 6u (max|o| + |c| + r),
+    /// D r = 6u, and q = D r, where 64q² is less than u.
+    #[inline(always)]
+    pub fn span(&self, l: L, ball: &impl Asked<L>, ray: &LaneRay<L>) -> Span<L> {
+        let u = <L::Scalar as Scalar>::ROUNDOFF;
+        let Self { t, squared } = *self;
+        let radius_squared = ball.radius_squared(l);
+        let c = radius_squared - squared;
+        let unit = l.real(6.5 * u);
+        let e = (t.abs() + ray.extent).mul_add(unit, ball.offset_error(l));
+        let relative = e.mul_add(ball.curvature(l), l.real(9.0 * u));
+        let c_error = (e * e).mul_add(l.real(16.0), relative * squared.max(radius_squared));
+        let half = (c.max(l.real(0.0)) * ray.inverse_square).sqrt();
+        let along = ball.radius(l).mul_add(l.real(40.0 * u), e * l.real(4.0));
+        let error = (t.abs() + half).mul_add(l.real(9.0 * u), c_error / half + along);
+        Span {
+            near: Enclosure::about(t - half, error),
+            far: Enclosure::about(t + half, error),
+            hit: c.gt(c_error),
+            miss: c.lt(-c_error),
+            parts: [l.int(0); 2],
+        }
+    }
 }
 
 /// The canonical point scaled to length 1, which is also the canonical normal.

@@ -40,7 +40,8 @@ pub fn csv(results: &[Result]) -> String {
 #[error("the chart cannot be drawn: {0}")]
 pub struct ChartError(String);
 
-fn failed(error: impl ToString) -> ChartError {
+/// Any error of the drawing crate.
+pub(in crate::study) fn failed(error: impl ToString) -> ChartError {
     ChartError(error.to_string())
 }
 

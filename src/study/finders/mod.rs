@@ -112,22 +112,30 @@ pub enum Ready {
 impl Contestant {
     /// Prepares a surface; `None` where it cannot be placed.
     pub fn ready(self, shape: &OracleShape) -> Option<Ready> {
-        let tape = &shape.field.tape;
+        self.of(&Implicit {
+            name: None,
+            field: shape.field.clone(),
+            inside: shape.inside(),
+            closed: false,
+            finder: FinderChoice::Auto,
+            steps: 1,
+        })
+    }
+
+    /// Prepares a surface whose box is a cube about the origin, not moved.
+    pub fn of(self, implicit: &Implicit) -> Option<Ready> {
+        let (tape, half_width) = (&implicit.field.tape, implicit.inside[1].x);
         Some(match self {
             Self::SignChange(Precision::Single, steps) => {
-                Ready::Single(March::new(tape, shape.half_width, steps))
+                Ready::Single(March::new(tape, half_width, steps))
             }
             Self::SignChange(Precision::Double, steps) => {
-                Ready::Double(March::new(tape, shape.half_width, steps))
+                Ready::Double(March::new(tape, half_width, steps))
             }
             Self::Proved(finder) => {
                 let implicit = Implicit {
-                    name: None,
-                    field: shape.field.clone(),
-                    inside: shape.inside(),
-                    closed: false,
                     finder,
-                    steps: 1,
+                    ..implicit.clone()
                 };
                 let placed = PlacedImplicit::new(&implicit, &Affine::IDENTITY);
                 Ready::Proved(Box::new(placed.ok()?))
@@ -148,7 +156,7 @@ impl Ready {
                     t_min,
                     t_max: f64::INFINITY,
                 };
-                match placed.first_hit(&query, workspace, &mut ImplicitTally::default()) {
+                match placed.first_crossing(&query, workspace, &mut ImplicitTally::default()) {
                     ImplicitAnswer::Found(hit) => Answer::Hit(hit.t),
                     ImplicitAnswer::Absent => Answer::Miss,
                     ImplicitAnswer::Undecided => Answer::Undecided,
@@ -187,7 +195,8 @@ impl Score {
         self.nanoseconds / f64::from(self.rays.max(1))
     }
 
-    fn joined(self, other: Self) -> Self {
+    /// Both together.
+    pub fn joined(self, other: Self) -> Self {
         Self {
             rays: self.rays + other.rays,
             wrong: self.wrong + other.wrong,

@@ -10,7 +10,7 @@ use crate::shape::Ray;
 use crate::shape::implicit::expression::{Expression, Parameter, parse, rational};
 
 /// Rays and surfaces that come with the program.
-const RAYS: &str = include_str!("../../../tests/data/implicit_rays.csv");
+const RAYS: &str = include_str!("../../../tests/data/implicit.csv");
 const SHAPES: &str = include_str!("../../../tests/data/implicit_shapes.csv");
 
 /// Why a set of rays cannot be used.

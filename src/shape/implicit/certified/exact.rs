@@ -8,8 +8,9 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 use super::super::program::{Program, Whole};
 use super::Certified;
 use crate::math::exact::Exact;
-use crate::math::number::power_of_two;
+use crate::math::number::{Number, power_of_two};
 use crate::root::exact::{ExactRoot, Point, Stretch, first_root};
+use crate::root::sharpen::sharpened;
 use crate::shape::Ray;
 use crate::shape::ladder::ScaledRay;
 
@@ -146,6 +147,44 @@ pub(super) fn first_hit(
         enclosure: root.enclosure.map(|t| t / unit),
         ..root
     })
+}
+
+/// The local point of a ray's first hit: the exact points at both ends of its enclosure narrowed by
+/// this many bits, up to the relative precision of quotients of exact numbers. `None` where the field
+/// vanishes there more than once because a factor has a power.
+pub(super) fn hit_points(
+    placed: &Certified,
+    ray: &Ray,
+    enclosure: [f64; 2],
+    bits: u32,
+) -> Option<[[Exact; 3]; 2]> {
+    let scaled = ScaledRay::new(ray);
+    let unit = power_of_two(scaled.exponent());
+    let line = IntegerRay::new(placed, &scaled);
+    let coordinates = [0, 1, 2].map(|i| [line.origin[i].clone(), line.direction[i].clone()]);
+    let mut first: Option<([Exact; 2], u32)> = None;
+    for factor in &placed.factors {
+        let degree = factor.program.result().degree;
+        let coefficients = factor.program.powers(&coordinates, &line.scale, degree)?;
+        let Some(ends) = sharpened(&coefficients, enclosure.map(|t| t * unit), bits) else {
+            continue;
+        };
+        let earlier = first
+            .as_ref()
+            .is_none_or(|(known, _)| ends[0].minus(&known[0]).sign() == Some(Ordering::Less));
+        if earlier {
+            first = Some((ends, factor.power));
+        }
+    }
+    let (ends, power) = first?;
+    let local = placed.ladder.exact.local(&scaled);
+    let point = |t: &Exact| {
+        [0, 1, 2].map(|i| {
+            let place = local.origin[i].plus(&local.direction[i].times(t));
+            place.divided_by(&local.scale)
+        })
+    };
+    (power == 1).then(|| ends.each_ref().map(point))
 }
 
 /// How many times t is a root of the field along the ray, 0 where it is none; t is in units of the

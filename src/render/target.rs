@@ -1,12 +1,15 @@
-//! The scene as rays meet it.
+//! The scene as single rays meet it, exactly: for given rays and for what is visible in the middle
+//! of each pixel.
 
-use etalon::scene::{Implicit, Named, Object, Scene, Shape, Surface};
-use etalon::shape::implicit::certified::{Tier, Workspace};
-use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
-use etalon::shape::{Placed, Query, ShapeKind, Start, Tally, nearest};
+use crate::scene::{Implicit, Named, Object, Scene, Shape, Surface};
+use crate::shape::implicit::certified::{Tier, Workspace};
+use crate::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
+use crate::shape::{Placed, Query, ShapeKind, Start, Tally, nearest};
 use glam::DVec3;
+use rayon::prelude::*;
 
-use crate::cli::error::CommandError;
+use super::tile::Window;
+use crate::camera::centre_ray;
 
 /// All objects of a scene, placed.
 pub struct Target {
@@ -83,9 +86,20 @@ impl Decided {
     }
 }
 
+/// An object's matrix has no inverse.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the object \"{name}\" has a transform that is not invertible")]
+pub struct Singular {
+    /// The object.
+    pub name: String,
+}
+
 impl Target {
     /// Places the objects of a scene.
-    pub fn new(scene: &Scene) -> Result<Self, CommandError> {
+    ///
+    /// # Errors
+    /// [`Singular`] for a matrix that has no inverse.
+    pub fn new(scene: &Scene) -> Result<Self, Singular> {
         let mut target = Self {
             names: scene.objects.iter().map(|o| o.name.clone()).collect(),
             priorities: scene.objects.iter().map(|o| priority(scene, o)).collect(),
@@ -94,7 +108,7 @@ impl Target {
             implicit: Vec::new(),
         };
         for (index, Named { name, value }) in scene.objects.iter().enumerate() {
-            let singular = |_| CommandError::Singular { name: name.clone() };
+            let singular = |_| Singular { name: name.clone() };
             match certified_kind(&value.shape) {
                 Ok(kind) => {
                     let placed = Placed::new(kind, &value.to_world).map_err(singular)?;
@@ -177,6 +191,32 @@ impl Target {
         let rank = |hit: &FirstHit| (self.priorities[hit.object], hit.object);
         hit.t < other.t || (hit.t == other.t && rank(hit) < rank(other))
     }
+}
+
+/// The first surface on the ray through the centre of each pixel of a window, row by row; `None`
+/// too where it stays undecided.
+///
+/// # Errors
+/// As [`Target::new`].
+pub fn first_hits(scene: &Scene, window: Window) -> Result<Vec<Option<FirstHit>>, Singular> {
+    let target = Target::new(scene)?;
+    let row = |y: u32| (window.x0..window.x1).map(move |x| [x, y]);
+    let pixels: Vec<[u32; 2]> = (window.y0..window.y1).flat_map(row).collect();
+    Ok(pixels
+        .into_par_iter()
+        .map(|pixel| {
+            let query = Query {
+                ray: centre_ray(&scene.camera, scene.image.size, pixel),
+                t_min: 0.0,
+                t_max: f64::INFINITY,
+            };
+            let mut workspace = Workspace::default();
+            match target.first_hit(&query, &mut workspace, &mut Decided::default()) {
+                First::Hit(hit) => Some(hit),
+                First::Nothing | First::Undecided(_) => None,
+            }
+        })
+        .collect())
 }
 
 fn priority(scene: &Scene, object: &Named<Object>) -> u8 {

@@ -1,0 +1,219 @@
+//! `etalon compare`: picture against picture, or against a number.
+
+mod text;
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use etalon::film::Attribute;
+use etalon::stats::Estimate;
+use etalon::stats::metrics::Metric;
+use etalon::study::compare::stale::{Freshness, different_scenes, freshness};
+use etalon::study::compare::{
+    ChannelMetrics, Judgement, LEVEL, Metrics, Side, against_truth, flip, judge, metrics,
+    write_heatmap,
+};
+use serde::Serialize;
+
+use super::Answer;
+use super::args::Compare;
+use super::error::CommandError;
+
+/// All that there is to say.
+#[derive(Serialize)]
+struct Report {
+    /// The picture.
+    a: PathBuf,
+    /// What it is compared with.
+    #[serde(flatten)]
+    with: With,
+    /// Width and height in pixels.
+    size: [usize; 2],
+    /// The metrics by channel; none against a number.
+    channels: Vec<ChannelMetrics>,
+    /// The metrics of R, G and B together.
+    rgb: Option<Metrics>,
+    /// HDR-FLIP of B and A, the mean over the pixels.
+    flip: Option<Metric>,
+    /// The verdict, where variances are known.
+    judgement: Option<Judgement>,
+    /// The relative difference at the ends of the heat map's scale.
+    heatmap_scale: Option<f64>,
+    /// What should be known besides.
+    notes: Vec<String>,
+}
+
+/// The other side.
+#[derive(Serialize)]
+#[serde(rename_all = "snake_case")]
+enum With {
+    /// A picture.
+    B(PathBuf),
+    /// A number.
+    Truth(f64),
+}
+
+/// Compares and says so.
+pub fn run(arguments: &Compare) -> Result<Answer, CommandError> {
+    let a = Side::read(&arguments.a)?;
+    let b = arguments.b.as_deref().map(Side::read).transpose()?;
+    let report = match (&b, arguments.truth) {
+        (Some(b), _) => with_picture(arguments, &a, b)?,
+        (None, Some(truth)) => with_number(&a, truth),
+        (None, None) => {
+            return Err(CommandError::Arguments(
+                "nothing to compare with".to_owned(),
+            ));
+        }
+    };
+    let mut output = std::io::stdout().lock();
+    let said = if arguments.json {
+        let json = serde_json::to_string_pretty(&report);
+        json.map_err(|error| CommandError::Output(error.into()))?
+    } else {
+        text::text(&report)
+    };
+    writeln!(output, "{}", said.trim_end())
+        .and_then(|()| output.flush())
+        .map_err(CommandError::Output)?;
+    match &report.judgement {
+        Some(judgement) if judgement.consistent => Ok(Answer::Good),
+        Some(_) => Ok(Answer::No),
+        None => Err(CommandError::NoVerdict(why_not(&a, b.as_ref()))),
+    }
+}
+
+fn with_picture(arguments: &Compare, a: &Side, b: &Side) -> Result<Report, CommandError> {
+    let (channels, rgb) = metrics(a, b)?;
+    let mut notes = Vec::new();
+    let stale = [a, b].map(stale);
+    if let Some(difference) = different_scenes(a, b) {
+        let because: Vec<String> = stale.into_iter().flatten().collect();
+        return Err(CommandError::Scenes(difference, because.join("; ")));
+    }
+    if let (None, Some(words)) = (a.text("sceneHash"), &stale[1]) {
+        return Err(CommandError::Scenes(words.clone(), String::new()));
+    }
+    notes.extend(stale.into_iter().flatten());
+    notes.extend(only_one(a, b));
+    notes.extend(other_lengths(a, b));
+    let heatmap_scale = match &arguments.heatmap {
+        Some(path) => write_heatmap(path, a, b)?,
+        None => None,
+    };
+    if arguments.heatmap.is_some() && heatmap_scale.is_none() {
+        notes.push("no heat map: a picture has no R, G, B".to_owned());
+    }
+    let flip = match (a.rgb(), b.rgb()) {
+        (Some(own), Some(reference)) => Some(Metric::mean(&flip(&reference, &own, a.width))),
+        _ => None,
+    };
+    Ok(Report {
+        a: a.path.clone(),
+        with: With::B(b.path.clone()),
+        size: [a.width, a.height],
+        channels,
+        rgb,
+        flip,
+        judgement: judge(a, b, LEVEL),
+        heatmap_scale,
+        notes,
+    })
+}
+
+fn with_number(a: &Side, truth: f64) -> Report {
+    Report {
+        a: a.path.clone(),
+        with: With::Truth(truth),
+        size: [a.width, a.height],
+        channels: Vec::new(),
+        rgb: None,
+        flip: None,
+        judgement: against_truth(a, truth, LEVEL),
+        heatmap_scale: None,
+        notes: stale(a).into_iter().collect(),
+    }
+}
+
+/// Words about a picture whose scene has changed since. Scene files are looked for from the
+/// current directory and from those that the picture is in.
+fn stale(side: &Side) -> Option<String> {
+    let path = side
+        .path
+        .canonicalize()
+        .unwrap_or_else(|_| side.path.clone());
+    let roots = std::iter::once(Path::new("")).chain(path.ancestors().skip(1));
+    let found = roots
+        .map(|root| freshness(side, root))
+        .find(|found| !matches!(found, Freshness::Missing(_)));
+    match found {
+        Some(Freshness::Stale(scene)) => Some(format!(
+            "{} is stale: {} has changed since it was made",
+            side.path.display(),
+            scene.display()
+        )),
+        _ => None,
+    }
+}
+
+/// Words about channels that only one picture has.
+fn only_one(a: &Side, b: &Side) -> Vec<String> {
+    let missing = |from: &Side, other: &Side| {
+        let names: Vec<&str> = from
+            .channels
+            .iter()
+            .filter(|channel| other.channel(&channel.name).is_none())
+            .map(|channel| channel.name.as_str())
+            .collect();
+        (!names.is_empty())
+            .then(|| format!("only {} has {}", from.path.display(), names.join(", ")))
+    };
+    [missing(a, b), missing(b, a)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+/// Words about paths that may be longer in one picture than in the other.
+fn other_lengths(a: &Side, b: &Side) -> Option<String> {
+    let [own, others] = [a, b].map(|side| match side.attribute("maxDepth")? {
+        Attribute::Int(depth) => Some(depth.to_string()),
+        Attribute::Text(text) => Some(text.clone()),
+        _ => None,
+    });
+    let (own, others) = (own?, others?);
+    (own != others).then(|| {
+        format!(
+            "{} was made with max_depth {own} and {} with {others}",
+            a.path.display(),
+            b.path.display()
+        )
+    })
+}
+
+/// Why there is no verdict.
+fn why_not(a: &Side, b: Option<&Side>) -> String {
+    let names: Vec<String> = std::iter::once(a)
+        .chain(b)
+        .filter(|side| side.freedom.is_none())
+        .map(|side| side.path.display().to_string())
+        .collect();
+    if names.is_empty() {
+        return "no channel has variances in both pictures".to_owned();
+    }
+    format!(
+        "{} says no variance of its pixels (channels standard_error.… or variance.…, and the \
+         attribute replicates, at least 2): etalon render --replicates 8 writes them",
+        names.join(" and ")
+    )
+}
+
+/// A difference in standard errors, for people.
+fn score(judged: &etalon::study::compare::ChannelJudgement) -> f64 {
+    Estimate {
+        value: judged.relative_bias,
+        standard_error: judged.standard_error,
+        freedom: judged.freedom,
+    }
+    .score(0.0)
+}

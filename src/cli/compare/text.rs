@@ -1,0 +1,156 @@
+//! A comparison in words.
+
+use std::fmt::Write as _;
+
+use etalon::stats::metrics::Metric;
+use etalon::study::compare::{Judgement, Metrics};
+
+use super::{Report, With, score};
+
+/// The whole report.
+pub fn text(report: &Report) -> String {
+    let [width, height] = report.size;
+    let mut text = match &report.with {
+        With::B(b) => format!(
+            "{} against {}, {width}x{height} pixels\n",
+            report.a.display(),
+            b.display()
+        ),
+        With::Truth(truth) => format!(
+            "the mean of {} against {truth}, {width}x{height} pixels\n",
+            report.a.display()
+        ),
+    };
+    push_metrics(&mut text, report);
+    if let Some(judgement) = &report.judgement {
+        push_judgement(&mut text, judgement);
+    }
+    if let Some(scale) = report.heatmap_scale {
+        let _ = writeln!(
+            text,
+            "heat map: dark red and dark blue are {:+.2} % and {:+.2} % of the reference",
+            100.0 * scale,
+            -100.0 * scale
+        );
+    }
+    for note in &report.notes {
+        let _ = writeln!(text, "note: {note}");
+    }
+    text
+}
+
+fn push_metrics(text: &mut String, report: &Report) {
+    if report.channels.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        text,
+        "\n{:<20} {:>12} {:>12} {:>12} {:>20} {:>18} {:>18} {:>18} {:>18}",
+        "channel",
+        "mean A",
+        "mean B",
+        "mean error",
+        "relative",
+        "RMSE",
+        "relMSE",
+        "relMSE - var B",
+        "SMAPE"
+    );
+    for channel in &report.channels {
+        let [a, b] = channel.means;
+        let means = format!("{:<20} {a:>12.6} {b:>12.6}", channel.channel);
+        push_row(text, &means, &channel.metrics);
+    }
+    if let Some(metrics) = &report.rgb {
+        push_row(
+            text,
+            &format!("{:<20} {:>12} {:>12}", "R, G, B", "", ""),
+            metrics,
+        );
+    }
+    if let Some(flip) = &report.flip {
+        let _ = writeln!(
+            text,
+            "HDR-FLIP {:.4} (0 looks the same, 1 is the worst)",
+            flip.value
+        );
+    }
+    text.push_str("± one standard error, from the spread over the pixels\n");
+}
+
+fn push_row(text: &mut String, start: &str, metrics: &Metrics) {
+    let unbiased = metrics
+        .relmse_without_reference_variance
+        .map_or_else(|| "unknown".to_owned(), measured);
+    let relative = metrics.relative_mean_error;
+    let _ = writeln!(
+        text,
+        "{start} {:>+12.2e} {:>20} {:>18} {:>18} {unbiased:>18} {:>18}",
+        metrics.mean_error.value,
+        format!(
+            "{:+.4} % ± {:.4} %",
+            100.0 * relative.value,
+            100.0 * relative.standard_error
+        ),
+        measured(metrics.rmse),
+        measured(metrics.relmse),
+        measured(metrics.smape),
+    );
+}
+
+fn measured(metric: Metric) -> String {
+    format!("{:.2e} ± {:.0e}", metric.value, metric.standard_error)
+}
+
+fn push_judgement(text: &mut String, judgement: &Judgement) {
+    let _ = writeln!(
+        text,
+        "\n{:<20} {:>12} {:>12} {:>7} {:>9} {:>22} {:>24} {:>9}",
+        "channel",
+        "bias",
+        "± s.e.",
+        "s.e.s",
+        "p",
+        "caught from a bias of",
+        "worst of blocks",
+        "all, p"
+    );
+    for channel in &judgement.channels {
+        let blocks = channel.blocks.as_ref().map_or_else(String::new, |blocks| {
+            let [x, y] = blocks.worst.unwrap_or_default();
+            format!(
+                "{:>24} {:>9.2e}",
+                format!(
+                    "{:+.1} s.e. of {} at {x},{y}",
+                    blocks.worst_score, blocks.count
+                ),
+                blocks.distribution_p_value
+            )
+        });
+        let _ = writeln!(
+            text,
+            "{:<20} {:>10.4} % {:>10.4} % {:>+7.1} {:>9.2e} {:>20.4} % {blocks}",
+            channel.channel,
+            100.0 * channel.relative_bias,
+            100.0 * channel.standard_error,
+            score(channel),
+            channel.p_value,
+            100.0 * channel.smallest_caught,
+        );
+    }
+    for channel in &judgement.channels {
+        for words in &channel.rejected {
+            let _ = writeln!(text, "{}: {words}", channel.channel);
+        }
+    }
+    let (verdict, level) = (judgement.consistent, judgement.level);
+    let verdict = if verdict {
+        "consistent"
+    } else {
+        "NOT consistent"
+    };
+    let _ = writeln!(
+        text,
+        "{verdict} (honest pictures are called inconsistent with probability {level:.0e})"
+    );
+}

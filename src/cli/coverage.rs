@@ -1,0 +1,128 @@
+//! `etalon coverage`: are the error bars of scenes and samplers honest?
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use etalon::scene::{self, Overrides};
+use etalon::study::choice::stem;
+use etalon::study::coverage::{Count, Coverage, SURVEY, Survey, cover};
+use etalon::study::subject::Subject;
+
+use super::Answer;
+use super::args;
+use super::error::CommandError;
+use super::render::{instructions, say, threads};
+use super::study::write;
+use super::values::Instructions;
+
+/// How many times as many samples the survey takes as a tested render: what it has not seen
+/// contributes to a tested render with a probability of a sixteenth at most, on average.
+const SURVEY_SHARE: u32 = 16;
+/// Shares of blocks between which 95 % intervals are honest.
+const HONEST: [f64; 2] = [0.93, 0.97];
+/// Edge of blocks: pictures are whole blocks where they can be.
+const BLOCK: u32 = etalon::render::blocks::EDGE as u32;
+
+/// Tests all scenes with all samplers.
+pub fn run(arguments: &args::Coverage) -> Result<Answer, CommandError> {
+    let pool = threads(arguments.threads)?;
+    let mut table = String::from("scene,sampler,spp,enough,enough_held,few,few_held\n");
+    let mut total = Coverage::default();
+    for path in &arguments.scenes {
+        for (sampler, coverage) in pool.install(|| test(arguments, path))? {
+            total = total.plus(coverage);
+            say(&line(&stem(path), &sampler, coverage))?;
+            let Coverage { enough, few } = coverage;
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                table,
+                "{},{sampler},{},{},{},{},{}",
+                stem(path),
+                arguments.spp,
+                enough.all,
+                enough.held,
+                few.all,
+                few.held
+            );
+        }
+    }
+    say(&line("all", "all", total))?;
+    if let Some(path) = &arguments.output {
+        write(path, table.as_bytes())?;
+    }
+    let share = total.enough.share();
+    let honest = share.is_nan() || (HONEST[0]..=HONEST[1]).contains(&share);
+    Ok(if honest { Answer::Good } else { Answer::No })
+}
+
+/// One scene with each sampler.
+fn test(arguments: &args::Coverage, path: &Path) -> Result<Vec<(String, Coverage)>, CommandError> {
+    let failed =
+        |error: etalon::study::subject::SubjectError| CommandError::Study(error.to_string());
+    let mut overrides = Overrides {
+        set: arguments.set.clone(),
+        ..Overrides::default()
+    };
+    let [width, height] = scene::load(path, &overrides)?.image.size;
+    let scale = f64::from(arguments.edge) / f64::from(width.max(height));
+    let pixels = |n: u32| {
+        let scaled = f64::from(n) * scale / f64::from(BLOCK);
+        (scaled.round() as u32).max(1) * BLOCK
+    };
+    let size = format!("[{}, {}]", pixels(width), pixels(height));
+    overrides.set.push(("image.size".to_owned(), size));
+    let subject = Subject {
+        path: path.to_owned(),
+        overrides,
+        instructions: instructions(Instructions::Auto)?,
+    };
+    let with = |name: &str, settings: &[(&str, String)]| {
+        let mut overrides = subject.overrides.clone();
+        let settings = settings.iter();
+        overrides
+            .set
+            .extend(settings.map(|(key, value)| (format!("image.{key}"), value.clone())));
+        subject.ready(&overrides, name.to_owned()).map_err(failed)
+    };
+    let survey = [
+        ("sampler", "independent".to_owned()),
+        ("spp", SURVEY.to_string()),
+        ("replicates", SURVEY.to_string()),
+    ];
+    let renders = (SURVEY_SHARE * arguments.spp).div_ceil(SURVEY);
+    let blocks = Survey::new(&mut with("survey", &survey)?, renders).blocks();
+    let mut all = Vec::new();
+    for sampler in &arguments.samplers {
+        let settings = [
+            ("sampler", sampler.clone()),
+            ("spp", arguments.spp.to_string()),
+        ];
+        let mut ready = with(sampler, &settings)?;
+        let coverage = (0..arguments.renders)
+            .map(|render| cover(&mut ready, render, &blocks))
+            .fold(Coverage::default(), Coverage::plus);
+        all.push((sampler.clone(), coverage));
+    }
+    Ok(all)
+}
+
+fn line(scene: &str, sampler: &str, coverage: Coverage) -> String {
+    let Coverage { enough, few } = coverage;
+    let all = (enough.all + few.all).max(1);
+    let share = |count: Count| {
+        if count.all == 0 {
+            "     -".to_owned()
+        } else {
+            format!("{:5.2} %", 100.0 * count.share())
+        }
+    };
+    format!(
+        "{scene:18} {sampler:12} {} of {:7} blocks with enough contributing samples held; {} of {:6} with fewer \
+         ({:.1} % of all)",
+        share(enough),
+        enough.all,
+        share(few),
+        few.all,
+        100.0 * few.all as f64 / all as f64
+    )
+}

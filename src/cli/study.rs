@@ -1,0 +1,179 @@
+//! `etalon study`: error over samples and seconds, for a grid of choices.
+
+mod watch;
+
+use std::path::{Path, PathBuf};
+
+use etalon::study::axis::Key;
+use etalon::study::charts;
+use etalon::study::figure::Figure;
+use etalon::study::own::MARGIN;
+use etalon::study::run::{Request, Study, run as run_study};
+use etalon::study::subject::Subject;
+use etalon::study::summary::{self, Curve, curves};
+use etalon::study::{StudyError, choice, raster, report};
+
+use super::args;
+use super::error::CommandError;
+use super::render::{instructions, progress, say, threads};
+use super::{Answer, tell};
+use watch::Shown;
+
+/// Carries out a study, or goes on with one, and draws what there is.
+pub fn run(arguments: &args::Study) -> Result<Answer, CommandError> {
+    let request = request(arguments)?;
+    let threads = threads(arguments.threads)?;
+    progress::listen();
+    let request = Request {
+        threads: threads.current_num_threads() as u32,
+        ..request
+    };
+    let mut shown = Shown::new(arguments.quiet);
+    let study = threads.install(|| run_study(&request, &mut shown));
+    shown.finish();
+    let study = study.map_err(|error| said(&error))?;
+    publish(&request, &study)?;
+    say(&said_of(&request, &study))?;
+    if !study.complete && !arguments.quiet {
+        tell("note: interrupted; the same command goes on where this one stopped");
+    }
+    Ok(Answer::Good)
+}
+
+fn said(error: &StudyError) -> CommandError {
+    CommandError::Study(error.to_string())
+}
+
+fn request(arguments: &args::Study) -> Result<Request, CommandError> {
+    let scene = &arguments.scene;
+    let mut overrides = scene.overrides(arguments.panel.as_deref(), &[]);
+    if let Some(seed) = &arguments.seed {
+        overrides.set.push(("image.seed".to_owned(), seed.clone()));
+    }
+    let directory = arguments.output.clone().unwrap_or_else(|| {
+        let name = choice::stem(&scene.scene);
+        let panel = arguments.panel.iter().map(|panel| format!("-{panel}"));
+        PathBuf::from(format!("{name}{}-study", panel.collect::<String>()))
+    });
+    Ok(Request {
+        subject: Subject {
+            path: scene.scene.clone(),
+            overrides,
+            instructions: instructions(arguments.instructions)?,
+        },
+        axes: arguments.over.clone(),
+        replicates: arguments.replicates,
+        reference: arguments.reference.clone(),
+        budget: arguments.budget.0.as_secs_f64(),
+        threads: 0,
+        directory,
+        command: command_line(),
+    })
+}
+
+/// The command as it could be typed again.
+fn command_line() -> String {
+    let words = std::env::args().skip(1).map(|word| super::quoted(&word));
+    format!("etalon {}", words.collect::<Vec<_>>().join(" "))
+}
+
+/// Draws the charts and writes the report.
+fn publish(request: &Request, study: &Study) -> Result<(), CommandError> {
+    let abscissa = study.grid.abscissa.key;
+    let curves = curves(&study.rows, abscissa);
+    if curves.is_empty() {
+        return Ok(());
+    }
+    let figures = [
+        ("error", charts::error_over_abscissa(&curves, abscissa)),
+        (
+            "speed",
+            charts::error_over_seconds(&curves, charts::USUAL_ERROR),
+        ),
+        ("honesty", charts::estimated_over_actual(&curves, abscissa)),
+    ];
+    let mut drawn = Vec::new();
+    for (name, figure) in &figures {
+        // Without a point above zero there is nothing to see, such as error bars of one scramble.
+        if let Ok(svg) = figure.svg() {
+            write_chart(&request.directory.join(name), &svg)?;
+            drawn.push(svg);
+        }
+    }
+    let page = report::html(request, study, &curves, &drawn);
+    write(&request.directory.join("report.html"), page.as_bytes())
+}
+
+/// Writes a chart as NAME.svg and NAME.png.
+pub fn write_chart(base: &Path, svg: &str) -> Result<(), CommandError> {
+    let picture = raster::png(svg).map_err(|error| CommandError::Study(error.to_string()))?;
+    write(&base.with_extension("svg"), svg.as_bytes())?;
+    write(&base.with_extension("png"), &picture)
+}
+
+/// Writes a file, whole or not at all.
+pub fn write(path: &Path, content: &[u8]) -> Result<(), CommandError> {
+    use std::io::Write as _;
+    Ok(etalon::film::whole::write(path, |file| {
+        file.write_all(content)
+            .map_err(|source| etalon::film::Error::Write {
+                path: path.to_owned(),
+                source,
+            })
+    })?)
+}
+
+/// What was found, for people.
+fn said_of(request: &Request, study: &Study) -> String {
+    let abscissa = study.grid.abscissa.key;
+    let curves = curves(&study.rows, abscissa);
+    let mut lines: Vec<String> = curves.iter().map(|curve| line(curve, abscissa)).collect();
+    let [all, rendering] = study.seconds;
+    lines.push(format!(
+        "reference: {}{}",
+        study.about_reference,
+        known(study, &curves)
+    ));
+    lines.push(format!(
+        "{}: {} renders; {all:.1} s, {:.1} % of them outside rendering",
+        request.directory.join("report.html").display(),
+        study.rows.len(),
+        100.0 * (all - rendering) / all
+    ));
+    lines.join("\n")
+}
+
+/// How well the reference is known beside the best point.
+fn known(study: &Study, curves: &[Curve]) -> String {
+    let own = study.reference.rmse();
+    if own == 0.0 {
+        return String::new();
+    }
+    let times = summary::best(curves) / own;
+    let enough = if times < MARGIN {
+        "; points near it are known the worse, and marked where it is the larger part"
+    } else {
+        ""
+    };
+    format!(
+        ", root mean squared standard error {own:.2e}, {times:.1} times below the best point's{enough}"
+    )
+}
+
+fn line(curve: &Curve, abscissa: Key) -> String {
+    let slope = curve.slope().filter(|_| abscissa == Key::Spp);
+    let slope = slope.map_or_else(String::new, |slope| {
+        let [low, high] = slope.interval();
+        format!("; slope {:.3} ({low:.3} to {high:.3})", slope.value)
+    });
+    let last = curve.points.last().map_or_else(String::new, |point| {
+        let relmse = point.mean(|row| row.relmse).value;
+        let seconds = point.mean(|row| row.seconds).value;
+        format!(
+            "relmse {relmse:.3e} in {seconds:.3} s at {}={}",
+            abscissa.column(),
+            Figure::number(point.x)
+        )
+    });
+    format!("{}: {last}{slope}", curve.label)
+}

@@ -1,0 +1,192 @@
+//! What vectors of both precisions have in common.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, u8x16, u8x64};
+
+use super::inlined;
+
+/// Whether an instruction set has a fused multiply-add; known at compile time once inlined.
+#[inline(always)]
+pub fn fuses(level: Level) -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return matches!(level, Level::Avx2(_) | Level::Avx512(_));
+    #[cfg(not(target_arch = "x86_64"))]
+    return !level.is_fallback();
+}
+
+/// Whether the instruction set's own minimum and maximum are `a < b ? a : b` and `a > b ? a : b`,
+/// as `minps` and its kin are on x86.
+#[inline(always)]
+pub fn compares_once() -> bool {
+    cfg!(target_arch = "x86_64")
+}
+
+macro_rules! mask {
+    ($mask:ident, $count:literal) => {
+        impl<S: Simd> Mask for $mask<S> {
+            const COUNT: u32 = $count;
+            #[inline(always)]
+            fn any(self) -> bool {
+                self.any_true()
+            }
+            #[inline(always)]
+            fn bits(self) -> u32 {
+                self.to_bitmask() as u32
+            }
+        }
+    };
+}
+
+macro_rules! real {
+    ($real:ident, $mask:ident, $fused_by_call:ident) => {
+        impl<S: Simd> Real for $real<S> {
+            type Mask = $mask<S>;
+            #[inline(always)]
+            fn mul_add(self, a: Self, b: Self) -> Self {
+                if fuses(self.token().level()) {
+                    self.mul_add_precise(a, b)
+                } else {
+                    $fused_by_call(self, a, b)
+                }
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                SimdFloat::sqrt(self)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                SimdBase::abs(self)
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                if compares_once() {
+                    SimdBase::min(self, other)
+                } else {
+                    self.simd_lt(other).select(self, other)
+                }
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                if compares_once() {
+                    SimdBase::max(self, other)
+                } else {
+                    self.simd_gt(other).select(self, other)
+                }
+            }
+            #[inline(always)]
+            fn floor(self) -> Self {
+                SimdFloat::floor(self)
+            }
+            #[inline(always)]
+            fn round(self) -> Self {
+                self.round_ties_even()
+            }
+            #[inline(always)]
+            fn copysign(self, sign: Self) -> Self {
+                SimdFloat::copysign(self, sign)
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> Self::Mask {
+                self.simd_lt(other)
+            }
+            #[inline(always)]
+            fn le(self, other: Self) -> Self::Mask {
+                self.simd_le(other)
+            }
+            #[inline(always)]
+            fn gt(self, other: Self) -> Self::Mask {
+                self.simd_gt(other)
+            }
+            #[inline(always)]
+            fn ge(self, other: Self) -> Self::Mask {
+                self.simd_ge(other)
+            }
+            #[inline(always)]
+            fn same(self, other: Self) -> Self::Mask {
+                self.simd_eq(other)
+            }
+        }
+    };
+}
+
+/// The methods of [`super::Lanes`] that are alike.
+macro_rules! lanes {
+    ($real:ident, $mask:ident, $scalar:ty, $count:literal) => {
+        #[inline(always)]
+        fn narrow(self) -> Self {
+            self
+        }
+        #[inline(always)]
+        fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
+            self.0.vectorize(f)
+        }
+        #[inline(always)]
+        fn real(self, x: f64) -> Self::Real {
+            $real::splat(self.0, x as $scalar)
+        }
+        #[inline(always)]
+        fn splat(self, x: $scalar) -> Self::Real {
+            $real::splat(self.0, x)
+        }
+        #[inline(always)]
+        fn mask(self, x: bool) -> Self::Mask {
+            $mask::splat(self.0, x)
+        }
+        #[inline(always)]
+        fn mask_from_bits(self, bits: u32) -> Self::Mask {
+            $mask::from_bitmask(self.0, bits.into())
+        }
+        #[inline(always)]
+        fn load(self, from: &[$scalar]) -> Self::Real {
+            $real::from_slice(self.0, &from[..$count])
+        }
+        #[inline(always)]
+        fn store(self, x: Self::Real, to: &mut [$scalar]) {
+            x.store_slice(&mut to[..$count]);
+        }
+        #[inline(always)]
+        fn lane(self, x: Self::Real, i: usize) -> $scalar {
+            x[i & ($count - 1)]
+        }
+        #[inline(always)]
+        fn with_lane(self, mut x: Self::Real, i: usize, value: $scalar) -> Self::Real {
+            x[i & ($count - 1)] = value;
+            x
+        }
+        #[inline(always)]
+        fn select(self, m: Self::Mask, a: Self::Real, b: Self::Real) -> Self::Real {
+            m.select(a, b)
+        }
+        #[inline(always)]
+        fn select_int(self, m: Self::Mask, a: Self::Int, b: Self::Int) -> Self::Int {
+            m.select(a, b)
+        }
+        #[inline(always)]
+        fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [$scalar]) {
+            self.store(x.compress(keep), to);
+        }
+        #[inline(always)]
+        fn compress_int_into(self, x: Self::Int, keep: Self::Mask, to: &mut [u32]) {
+            self.store_int(x.compress(keep), to);
+        }
+    };
+}
+
+pub(super) use {lanes, mask, real};
+
+/// Reverses the order of the bits in each byte, and of the bytes as `order` says in each 16.
+#[inline(always)]
+pub fn reversed_bytes<S: Simd>(simd: S, bytes: u8x64<S>, order: [u8; 16]) -> u8x64<S> {
+    /// The four bits of the index reversed.
+    const NIBBLES: [u8; 16] = [0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15];
+    let repeated = inlined(
+        #[inline(always)]
+        |block: [u8; 16]| u8x64::block_splat(u8x16::simd_from(simd, block)),
+    );
+    let table = repeated(NIBBLES);
+    let low = u8x64::splat(simd, 0x0f);
+    let bytes = bytes.swizzle_dyn_within_blocks(repeated(order));
+    let high_nibbles = table.swizzle_dyn_within_blocks(bytes & low) << 4;
+    let low_nibbles = table.swizzle_dyn_within_blocks((bytes >> 4) & low);
+    high_nibbles | low_nibbles
+}

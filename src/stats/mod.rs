@@ -1,0 +1,16 @@
+//! Statistics over slices of numbers: no knowledge of images or scenes.
+//!
+//! [`metrics`] says how far numbers are from a reference; an [`Estimate`] is a number with its
+//! standard error and the degrees of freedom of that; [`verdict`] decides whether an estimate is
+//! shown to be right, shown to be wrong, or neither; [`family`] shares a level among many tests;
+//! [`uniformity`] asks whether many p-values together look like those of honest numbers.
+
+pub mod estimate;
+pub mod family;
+pub mod metrics;
+pub mod slope;
+pub mod student;
+pub mod uniformity;
+pub mod verdict;
+
+pub use estimate::Estimate;

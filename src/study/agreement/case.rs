@@ -1,0 +1,248 @@
+//! A scene, and what is asked about its pictures.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::film::names;
+use crate::film::pixels::Estimate;
+use crate::film::spectral::channel_name;
+use crate::math::instructions::Instructions;
+use crate::plan::{Plan, PlanError};
+use crate::render::bins::{BinError, BinGrid};
+use crate::render::session::{Progress, Rendered, Request, render, render_binned};
+use crate::render::target::{Singular, first_hits};
+use crate::render::tile::Window;
+
+use crate::scene::{Overrides, Scene, SceneError, load};
+use crate::study::compare::{Channel, Side};
+
+/// Independent scrambles per pixel: they cost little of the points' quality, and three degrees of
+/// freedom in each pixel are many in a block.
+const REPLICATES: u32 = 4;
+/// Fewest pixels of a region.
+const LEAST_PIXELS: usize = 16;
+
+/// A scene to be rendered and judged.
+#[derive(Debug)]
+pub struct Case {
+    /// What it is called.
+    pub name: String,
+    /// The scene.
+    pub scene: Scene,
+    /// Bands of wavelengths to be judged besides R, G, B.
+    pub bands: Option<Arc<BinGrid>>,
+    /// Parts of the picture.
+    pub regions: Vec<Region>,
+}
+
+/// The pixels whose centres show a material.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Region {
+    /// The material's name.
+    pub name: String,
+    /// Its pixels, row by row.
+    pub pixels: Vec<usize>,
+}
+
+/// Why a case cannot be had.
+#[derive(Debug, thiserror::Error)]
+pub enum CaseError {
+    /// The reference does not say what it is of.
+    #[error("{} does not name its scene file (attribute sceneFile)", .0.display())]
+    Unnamed(PathBuf),
+    /// The scene cannot be had.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// It cannot be planned.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// An object cannot be placed.
+    #[error(transparent)]
+    Singular(#[from] Singular),
+    /// Its bands cannot be had.
+    #[error("{}: {reason}", path.display())]
+    Bands {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// A sample was no number.
+    #[error("{name}: {count} samples are not numbers")]
+    NotANumber {
+        /// The case.
+        name: String,
+        /// How many.
+        count: u64,
+    },
+}
+
+impl Case {
+    /// A case of a scene.
+    ///
+    /// # Errors
+    /// [`Singular`] where the first hits of its pixels cannot be had.
+    pub fn new(
+        name: &str,
+        mut scene: Scene,
+        bands: Option<Arc<BinGrid>>,
+    ) -> Result<Self, Singular> {
+        scene.image.replicates = Some(REPLICATES);
+        let hits = first_hits(&scene, whole(&scene))?;
+        let shown: Vec<Option<usize>> = hits
+            .iter()
+            .map(|hit| hit.as_ref().map(|h| scene.objects[h.object].value.material))
+            .collect();
+        let regions = scene.materials.iter().enumerate().map(|(index, material)| {
+            let pixels = shown.iter().enumerate();
+            Region {
+                name: material.name.clone(),
+                pixels: pixels
+                    .filter(|(_, shown)| **shown == Some(index))
+                    .map(|(pixel, _)| pixel)
+                    .collect(),
+            }
+        });
+        let regions = regions
+            .filter(|region| region.pixels.len() >= LEAST_PIXELS)
+            .collect();
+        Ok(Self {
+            name: name.to_owned(),
+            scene,
+            bands,
+            regions,
+        })
+    }
+
+    /// The case that a reference is of; its scene file is looked for from `root`.
+    ///
+    /// # Errors
+    /// [`CaseError`] where the scene or its bands cannot be had.
+    pub fn of_reference(name: &str, reference: &Side, root: &Path) -> Result<Self, CaseError> {
+        let unnamed = || CaseError::Unnamed(reference.path.clone());
+        let file = reference.text("sceneFile").ok_or_else(unnamed)?;
+        let set = reference.text("overrides").unwrap_or("");
+        let overrides = Overrides {
+            panel: reference.text("panel").map(str::to_owned),
+            set: set
+                .split_whitespace()
+                .filter_map(|text| text.split_once('='))
+                .map(|(key, value)| (key.to_owned(), value.to_owned()))
+                .collect(),
+            finder: None,
+        };
+        let scene = load(&root.join(file), &overrides)?;
+        let bands = bands(reference).map_err(|reason| CaseError::Bands {
+            path: reference.path.clone(),
+            reason,
+        })?;
+        Ok(Self::new(name, scene, bands)?)
+    }
+
+    /// Plans and renders it.
+    ///
+    /// # Errors
+    /// [`CaseError`] where the plan cannot be had or samples are not numbers.
+    pub fn render(&self, spp: u32, seed: u64) -> Result<Side, CaseError> {
+        let mut scene = self.scene.clone();
+        (scene.image.spp, scene.image.seed) = (spp, seed);
+        let plan = Plan::new(&scene, false)?;
+        self.rendered(&plan, spp)
+    }
+
+    /// Renders a plan made of its scene.
+    ///
+    /// # Errors
+    /// [`CaseError::NotANumber`].
+    pub fn rendered(&self, plan: &Plan, spp: u32) -> Result<Side, CaseError> {
+        let request = Request {
+            window: whole(&self.scene),
+            samples: spp,
+            time: None,
+            instructions: Instructions::best(),
+        };
+        let rendered = match &self.bands {
+            Some(grid) => render_binned(plan, &request, grid, &mut Silent),
+            None => render(plan, &request, &mut Silent),
+        };
+        if rendered.not_a_number > 0 {
+            return Err(CaseError::NotANumber {
+                name: self.name.clone(),
+                count: rendered.not_a_number,
+            });
+        }
+        Ok(self.side(&rendered))
+    }
+
+    fn side(&self, rendered: &Rendered) -> Side {
+        let rgb = rendered.rgb();
+        let colours = names::RGB.iter().enumerate();
+        let mut channels: Vec<Channel> = colours.map(|(i, name)| channel(name, &rgb, i)).collect();
+        if let Some(grid) = &self.bands {
+            for (bin, nm) in grid.centres().iter().enumerate() {
+                let estimates = rendered.bin(bin).unwrap_or_default();
+                channels.push(channel(&channel_name(*nm), &estimates, 0));
+            }
+        }
+        let [width, height] = self.scene.image.size.map(|n| n as usize);
+        Side {
+            path: PathBuf::from(&self.name),
+            width,
+            height,
+            channels,
+            freedom: Some(f64::from(REPLICATES - 1)),
+            attributes: Vec::new(),
+        }
+    }
+}
+
+fn channel<const N: usize>(name: &str, estimates: &[Estimate<N>], index: usize) -> Channel {
+    let variance = |e: &Estimate<N>| e.standard_error[index] * e.standard_error[index];
+    Channel {
+        name: name.to_owned(),
+        values: estimates.iter().map(|e| e.mean[index]).collect(),
+        variances: Some(estimates.iter().map(variance).collect()),
+    }
+}
+
+/// The whole picture.
+fn whole(scene: &Scene) -> Window {
+    let [x1, y1] = scene.image.size;
+    Window {
+        x0: 0,
+        y0: 0,
+        x1,
+        y1,
+    }
+}
+
+struct Silent;
+
+impl Progress for Silent {
+    fn passed(&mut self, _: u32, _: u32, _: Duration, _: Option<f64>) -> bool {
+        true
+    }
+}
+
+/// The bands of a reference, whose attribute lists the ends of each in nm; they must be neighbours
+/// of equal width.
+fn bands(reference: &Side) -> Result<Option<Arc<BinGrid>>, String> {
+    let Some(text) = reference.text("bands") else {
+        return Ok(None);
+    };
+    let ends: Vec<[f64; 2]> =
+        serde_json::from_str(text).map_err(|e| format!("the attribute bands is no list: {e}"))?;
+    let ([low, high], [last_low, last_high]) = match (ends.first(), ends.last()) {
+        (Some(first), Some(last)) => (*first, *last),
+        _ => return Ok(None),
+    };
+    let width = high - low;
+    let equal = ends.iter().all(|[low, high]| high - low == width);
+    if !equal || ends.windows(2).any(|pair| pair[0][1] != pair[1][0]) {
+        return Err("its bands are no neighbours of equal width".to_owned());
+    }
+    let grid = BinGrid::new((low + high) / 2.0, (last_low + last_high) / 2.0, width);
+    let grid = grid.map_err(|error: BinError| error.to_string())?;
+    Ok(Some(Arc::new(grid)))
+}

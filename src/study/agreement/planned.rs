@@ -1,0 +1,131 @@
+//! How many samples, and what they can show.
+
+use super::{Case, ROUNDS};
+use crate::film::names;
+use crate::stats::verdict::POWER;
+use crate::stats::{Estimate, student};
+use crate::study::compare::{Channel, Side, mean_over};
+
+/// Tolerance of image means, relative, where samples and reference can show that much.
+pub const DELTA: f64 = 1e-3;
+/// Probability with which all of a case's questions are answered in the first round, if everything
+/// is right and their tolerances can be chosen.
+const FIRST_ROUND: f64 = 0.99;
+
+/// A number of the picture: the mean of a channel over a region, or all pixels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Question {
+    /// The channel's name.
+    pub channel: String,
+    /// Index of the region, or the whole picture.
+    pub region: Option<usize>,
+    /// Largest difference to be called none, relative to the reference.
+    pub tolerance: f64,
+}
+
+/// What is going to be rendered, and what is asked about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Planned {
+    /// Camera paths per pixel of the first round.
+    pub spp: u32,
+    /// The questions.
+    pub questions: Vec<Question>,
+}
+
+impl Question {
+    /// The picture's mean minus the reference's, and the reference's; `None` where a variance is
+    /// unknown or the reference is black.
+    #[must_use]
+    pub fn ask(&self, case: &Case, picture: &Side, reference: &Side) -> Option<(Estimate, f64)> {
+        let pixels = self
+            .region
+            .map(|index| case.regions[index].pixels.as_slice());
+        let mean = |side: &Side| {
+            let channel: &Channel = side.channel(&self.channel)?;
+            mean_over(channel, side.freedom?, pixels)
+        };
+        let (own, others) = (mean(picture)?, mean(reference)?);
+        (others.value > 0.0).then(|| (own.minus(&others), others.value))
+    }
+
+    /// What it is called.
+    #[must_use]
+    pub fn name(&self, case: &Case) -> String {
+        let whole = "whole picture";
+        let place = self.region.map_or(whole, |i| case.regions[i].name.as_str());
+        format!("{}, {place}", self.channel)
+    }
+}
+
+/// Plans a case from a pilot of `pilot_spp` paths per pixel, which is not used again. At most
+/// `most` camera paths are spent on the first round, fewer where those show all image means of R, G, B
+/// to be within [`DELTA`]; every other tolerance is what these samples allow at `level`.
+#[must_use]
+pub fn plan(
+    case: &Case,
+    (pilot, pilot_spp): (&Side, u32),
+    reference: &Side,
+    most: u64,
+    level: f64,
+) -> Planned {
+    let questions = questions(case, pilot, reference);
+    let missed = (1.0 - FIRST_ROUND) / questions.len() as f64;
+    // The squared error of a mean falls at least as 1/N.
+    let error = |question: &Question, spp: u32, missed: f64| {
+        let (difference, mean) = question.ask(case, pilot, reference)?;
+        let (twice, _) = question.ask(case, reference, reference)?;
+        let fixed = twice.standard_error * twice.standard_error / 2.0;
+        let own = difference.standard_error * difference.standard_error - fixed;
+        let own = own.max(0.0) * f64::from(pilot_spp) / f64::from(spp);
+        let needed = student::critical(level / f64::from(ROUNDS), difference.freedom)
+            + student::critical(missed, difference.freedom);
+        Some(needed * (own + fixed).sqrt() / mean)
+    };
+    // A question whose tolerance is given may need a second round with the usual probability.
+    let shown = |question: &Question, spp: u32| {
+        error(question, spp, 1.0 - POWER).is_none_or(|error| error <= DELTA)
+    };
+    let pixels = reference.width as u64 * reference.height as u64;
+    let mut spp = pilot_spp;
+    let is_mean = |q: &&Question| q.region.is_none() && names::RGB.contains(&q.channel.as_str());
+    while 2 * u64::from(spp) * pixels <= most
+        && !questions.iter().filter(is_mean).all(|q| shown(q, spp))
+    {
+        spp *= 2;
+    }
+    let judged = questions.into_iter().filter_map(|question| {
+        let tolerance = if shown(&question, spp) {
+            DELTA
+        } else {
+            error(&question, spp, missed)?
+        };
+        Some(Question {
+            tolerance,
+            ..question
+        })
+    });
+    Planned {
+        spp,
+        questions: judged.collect(),
+    }
+}
+
+/// All questions that both sides can answer.
+fn questions(case: &Case, picture: &Side, reference: &Side) -> Vec<Question> {
+    let mut questions = Vec::new();
+    for channel in &reference.channels {
+        let is_colour = names::RGB.contains(&channel.name.as_str());
+        let regions = (0..case.regions.len()).filter(|_| is_colour).map(Some);
+        for region in std::iter::once(None).chain(regions) {
+            let question = Question {
+                channel: channel.name.clone(),
+                region,
+                tolerance: DELTA,
+            };
+            if question.ask(case, picture, reference).is_some() {
+                questions.push(question);
+            }
+        }
+    }
+    questions
+}

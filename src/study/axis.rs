@@ -1,0 +1,178 @@
+//! What a study goes over: the choices of the estimator and their values.
+
+/// A choice that can be an axis of a study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(usize)]
+pub enum Key {
+    /// Camera paths a pixel.
+    Spp,
+    /// Which points the estimator uses.
+    Sampler,
+    /// Arithmetic of the path loop.
+    Precision,
+    /// Wavelengths a path.
+    Wavelengths,
+    /// Longest path in segments.
+    MaxDepth,
+    /// Finder of implicit surfaces.
+    Finder,
+    /// Independent scrambles within one render.
+    Scrambles,
+}
+
+impl Key {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Spp,
+        Self::Sampler,
+        Self::Precision,
+        Self::Wavelengths,
+        Self::MaxDepth,
+        Self::Finder,
+        Self::Scrambles,
+    ];
+
+    /// Its name on the command line and its column in a table.
+    pub fn column(self) -> &'static str {
+        match self {
+            Self::Spp => "spp",
+            Self::Sampler => "sampler",
+            Self::Precision => "precision",
+            Self::Wavelengths => "wavelengths",
+            Self::MaxDepth => "max_depth",
+            Self::Finder => "finder",
+            Self::Scrambles => "scrambles",
+        }
+    }
+
+    /// The key of the scene's `[image]` table it stands for.
+    pub fn image_key(self) -> &'static str {
+        match self {
+            Self::Scrambles => "replicates",
+            other => other.column(),
+        }
+    }
+
+    /// Whether its values are whole numbers.
+    pub fn is_number(self) -> bool {
+        match self {
+            Self::Spp | Self::Wavelengths | Self::MaxDepth | Self::Scrambles => true,
+            Self::Sampler | Self::Precision | Self::Finder => false,
+        }
+    }
+}
+
+/// A choice and the values it takes, in order.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Axis {
+    /// The choice.
+    pub key: Key,
+    /// Its values, at least one, none twice.
+    pub values: Vec<String>,
+}
+
+/// What is wrong with an axis.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum AxisError {
+    /// No `=`.
+    #[error(
+        "\"{0}\" is no axis: expected KEY=VALUES, such as spp=1..4096x2 or sampler=sobol,independent"
+    )]
+    Form(String),
+    /// A key that a study cannot go over.
+    #[error("a study cannot go over \"{0}\": it can go over {known}; anything else is set with --set", known = known())]
+    Key(String),
+    /// The values of a range are not whole numbers, or it has no end.
+    #[error(
+        "\"{0}\" is no range: expected FROM..TOxFACTOR with whole numbers 1 ≤ FROM ≤ TO and a factor above 1, such as 1..64x2"
+    )]
+    Range(String),
+    /// No values.
+    #[error("the axis {0} has no values")]
+    Empty(&'static str),
+    /// A number was expected.
+    #[error("\"{text}\" is no whole number, as the axis {key} has")]
+    Number {
+        /// The axis.
+        key: &'static str,
+        /// What was given.
+        text: String,
+    },
+}
+
+fn known() -> String {
+    Key::ALL.map(Key::column).join(", ")
+}
+
+/// Most values of an axis: more would be no study but a mistake.
+const MOST_VALUES: usize = 1000;
+
+impl std::str::FromStr for Axis {
+    type Err = AxisError;
+
+    /// Reads `KEY=VALUE,…`, where a value of a number's axis may be a range `FROM..TOxFACTOR`.
+    fn from_str(text: &str) -> Result<Self, AxisError> {
+        let (name, list) = text
+            .split_once('=')
+            .ok_or_else(|| AxisError::Form(text.to_owned()))?;
+        let key = Key::ALL.into_iter().find(|key| key.column() == name.trim());
+        let key = key.ok_or_else(|| AxisError::Key(name.trim().to_owned()))?;
+        let mut values: Vec<String> = Vec::new();
+        for item in list.split(',').map(str::trim).filter(|i| !i.is_empty()) {
+            for value in items(key, item)? {
+                if !values.contains(&value) {
+                    values.push(value);
+                }
+            }
+        }
+        if values.is_empty() {
+            return Err(AxisError::Empty(key.column()));
+        }
+        if key.is_number() {
+            // Whole numbers in their order; a limit that is none comes last.
+            values.sort_by_key(|value| value.parse().unwrap_or(u64::MAX));
+        }
+        Ok(Self { key, values })
+    }
+}
+
+/// The values that one item stands for.
+fn items(key: Key, item: &str) -> Result<Vec<String>, AxisError> {
+    if !key.is_number() {
+        return Ok(vec![item.to_owned()]);
+    }
+    if item.contains("..") {
+        let values = range(item).ok_or_else(|| AxisError::Range(item.to_owned()))?;
+        return Ok(values.iter().map(u64::to_string).collect());
+    }
+    match item.parse::<u64>() {
+        Ok(number) => Ok(vec![number.to_string()]),
+        Err(_) => Err(AxisError::Number {
+            key: key.column(),
+            text: item.to_owned(),
+        }),
+    }
+}
+
+/// `FROM..TOxFACTOR`: FROM, FROM·FACTOR … rounded to whole numbers, up to TO.
+fn range(item: &str) -> Option<Vec<u64>> {
+    let (from, rest) = item.split_once("..")?;
+    let (to, factor) = rest.split_once('x')?;
+    let from: u64 = from.trim().parse().ok().filter(|from| *from >= 1)?;
+    let to: u64 = to.trim().parse().ok().filter(|to| *to >= from)?;
+    let factor: f64 = factor.trim().parse().ok().filter(|f| *f > 1.0)?;
+    let mut values = Vec::new();
+    let mut value = from as f64;
+    while value.round() as u64 <= to && values.len() <= MOST_VALUES {
+        values.push(value.round() as u64);
+        value *= factor;
+    }
+    values.dedup();
+    (values.len() <= MOST_VALUES).then_some(values)
+}
+
+impl std::fmt::Display for Axis {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}={}", self.key.column(), self.values.join(","))
+    }
+}

@@ -1,0 +1,187 @@
+//! Which reference a study takes: the one given, a committed one, a known answer, or its own.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use super::StudyError;
+use super::axis::Key;
+use super::reference::{self, Reference, ReferenceError};
+use super::run::Request;
+use super::subject::{Ready, Subject};
+use crate::scene::{SamplerKind, Scene};
+use crate::spectrum::Spectrum;
+
+/// What is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Choice {
+    /// A committed reference, the scene's known answer, or the study's own, whichever there is
+    /// first.
+    Auto,
+    /// This picture.
+    File(PathBuf),
+    /// This radiance, the same at all wavelengths and in all pixels, W·m⁻²·sr⁻¹·nm⁻¹.
+    Radiance(f64),
+    /// This linear R, G, B in all pixels.
+    Colour([f64; 3]),
+}
+
+impl FromStr for Choice {
+    type Err = std::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let numbers: Option<Vec<f64>> = text
+            .split(',')
+            .map(|part| part.trim().parse().ok().filter(|n: &f64| n.is_finite()))
+            .collect();
+        Ok(match (text, numbers.as_deref()) {
+            ("auto", _) => Self::Auto,
+            (_, Some([radiance])) => Self::Radiance(*radiance),
+            (_, Some([r, g, b])) => Self::Colour([*r, *g, *b]),
+            _ => Self::File(PathBuf::from(text)),
+        })
+    }
+}
+
+/// What was found.
+#[derive(Debug)]
+pub struct Found {
+    /// The reference; `None` is the study's own, which is still to be rendered.
+    pub reference: Option<Reference>,
+    /// Where it comes from, in words.
+    pub about: String,
+    /// What there is to be told about the search.
+    pub notes: Vec<String>,
+}
+
+impl Found {
+    /// What names it.
+    pub fn name(&self) -> String {
+        let name = self.reference.as_ref().map(|r| r.name.clone());
+        name.unwrap_or_else(|| "own".to_owned())
+    }
+}
+
+/// A file's name without directory and extension.
+pub fn stem(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default();
+    stem.to_string_lossy().into_owned()
+}
+
+/// Finds the reference.
+///
+/// # Errors
+/// [`StudyError::Reference`] where the file asked for is none of this scene. With `auto`, a
+/// committed reference that does not fit is passed over, and the notes say why.
+pub fn find(request: &Request, scene: &Scene) -> Result<Found, StudyError> {
+    let size = scene.image.size.map(|n| n as usize);
+    let subject = reference::Subject {
+        scene,
+        set: &request.subject.overrides.set,
+    };
+    let given = |reference, about: String| Found {
+        reference: Some(reference),
+        about,
+        notes: Vec::new(),
+    };
+    match &request.reference {
+        Choice::File(path) => {
+            let reference = Reference::read(path, subject)?;
+            Ok(given(reference, format!("the file {}", path.display())))
+        }
+        Choice::Radiance(value) => {
+            let truth = Reference::truth(size, &Spectrum::constant(*value));
+            let about = format!("the radiance {value} at all wavelengths, known in closed form");
+            Ok(given(truth, about))
+        }
+        Choice::Colour(rgb) => {
+            let about = format!("the linear R, G, B {rgb:?}, known in closed form");
+            Ok(given(Reference::uniform(size, *rgb), about))
+        }
+        Choice::Auto => Ok(automatic(request, subject)),
+    }
+}
+
+fn automatic(request: &Request, subject: reference::Subject<'_>) -> Found {
+    let scene = subject.scene;
+    let mut notes = Vec::new();
+    for path in committed(&request.subject.path) {
+        match Reference::read(&path, subject) {
+            Ok(reference) => {
+                return Found {
+                    reference: Some(reference),
+                    about: format!("the committed reference {}", path.display()),
+                    notes,
+                };
+            }
+            // Of another panel: not meant for this study.
+            Err(ReferenceError::Variant { .. }) => {}
+            Err(reason) => notes.push(format!("not used as reference: {reason}")),
+        }
+    }
+    if let Some(radiance) = &scene.truth {
+        let size = scene.image.size.map(|n| n as usize);
+        return Found {
+            reference: Some(Reference::truth(size, radiance)),
+            about: "the truth that the scene file names".to_owned(),
+            notes,
+        };
+    }
+    Found {
+        reference: None,
+        about: String::new(),
+        notes,
+    }
+}
+
+/// Where committed references of a scene may lie: pictures whose name begins with the scene's in
+/// a directory `reference`, beside the scene's directory or in the current one.
+fn committed(scene: &Path) -> Vec<PathBuf> {
+    let name = stem(scene);
+    let beside = scene.parent().map(|directory| directory.join(".."));
+    let mut paths: Vec<PathBuf> = Vec::new();
+    for root in [Some(PathBuf::new()), beside].into_iter().flatten() {
+        let entries = std::fs::read_dir(root.join("reference"));
+        let found = entries.into_iter().flatten().flatten().map(|e| e.path());
+        let fits = |path: &PathBuf| {
+            stem(path).starts_with(&name) && path.extension().is_some_and(|e| e == "exr")
+        };
+        for path in found.filter(fits) {
+            let same = |other: &PathBuf| other.canonicalize().ok() == path.canonicalize().ok();
+            if !paths.iter().any(same) {
+                paths.push(path);
+            }
+        }
+    }
+    paths.sort();
+    paths
+}
+
+/// The scene as the study's own reference renders it: with the best unbiased sampler, finders that
+/// prove their hits, a precision that the plan answers for, and the longest of the paths that the
+/// points have.
+///
+/// # Errors
+/// [`StudyError::Subject`] where the scene is not valid so.
+pub fn own(subject: &Subject, points: &[Ready], samples: u32) -> Result<Ready, StudyError> {
+    let mut overrides = subject.overrides.clone();
+    let image = |key: &str, value: String| (format!("image.{key}"), value);
+    let sampler = match points.first().map(|ready| ready.scene.image.sampler) {
+        Some(SamplerKind::Center) => "center",
+        _ => "sobol",
+    };
+    let depths = points.iter().map(|ready| ready.scene.image.max_depth);
+    overrides.finder = Some("auto".to_owned());
+    overrides.set.extend([
+        image("sampler", sampler.to_owned()),
+        image("precision", "auto".to_owned()),
+        image("replicates", "1".to_owned()),
+        image(Key::Spp.image_key(), samples.to_string()),
+    ]);
+    // No limit on any path is no limit on the longest.
+    let unlimited = depths.clone().any(|depth| depth.is_none());
+    if let (false, Some(depth)) = (unlimited, depths.flatten().max()) {
+        overrides.set.push(image("max_depth", depth.to_string()));
+    }
+    let name = format!("{sampler}, precision and finder auto");
+    Ok(subject.ready(&overrides, name)?)
+}

@@ -1,0 +1,50 @@
+//! What the plan would choose for a scene of a problem's bodies.
+
+use std::path::Path;
+
+use super::families::Problem;
+use super::{Precision, Subject};
+use crate::plan::choose::{self, choose};
+use crate::scene::{Overrides, Shape, parse};
+use crate::shape::ShapeKind;
+
+/// Pixels along the picture's height, which the object about fills.
+const PIXELS: u32 = 256;
+
+/// The precision of the path loop; double where there is no plan.
+pub fn precision(subject: Subject, problem: &Problem) -> Precision {
+    let object = "[[object]]\nshape = \"sphere\"\nmaterial = \"grey\"\n";
+    let text = format!(
+        "[camera]\nfrom = [0, 0, {:?}]\nto = [0, 0, 0]\northographic = {:?}\n\
+         [image]\nsize = [{PIXELS}, {PIXELS}]\nspp = 1\n[materials]\ngrey = {{ diffuse = 0.5 }}\n{}",
+        problem.camera.z,
+        1.5 * problem.size,
+        object.repeat(problem.bodies.len())
+    );
+    let Ok(mut scene) = parse("failures", &text, Path::new(""), &Overrides::default()) else {
+        return Precision::Double;
+    };
+    for (object, body) in scene.objects.iter_mut().zip(&problem.bodies) {
+        object.value.to_world = body.to_world;
+        object.value.shape = match (subject, &body.implicit) {
+            (Subject::Canonical(kind), _) => shape(kind),
+            (_, Some(implicit)) => Shape::Implicit(implicit.clone()),
+            (_, None) => Shape::Sphere,
+        };
+    }
+    match choose(&scene, false).map(|choices| choices.precision) {
+        Ok(choose::Precision::Single) => Precision::Single,
+        _ => Precision::Double,
+    }
+}
+
+fn shape(kind: ShapeKind) -> Shape {
+    match kind {
+        ShapeKind::Sphere => Shape::Sphere,
+        ShapeKind::Cube => Shape::Cube,
+        ShapeKind::Cylinder => Shape::Cylinder,
+        ShapeKind::Disk => Shape::Disk,
+        ShapeKind::Rectangle => Shape::Rectangle,
+        ShapeKind::Plane => Shape::Plane,
+    }
+}

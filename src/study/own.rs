@@ -1,0 +1,132 @@
+//! A reference of the study's own, and how much of it is needed.
+
+use std::path::Path;
+
+use super::measure::planes;
+use super::reference::{Reference, ReferenceError, VARIANCE};
+use super::subject::Ready;
+use crate::film::provenance::hash;
+use crate::film::{Attribute, Picture, exr, names};
+use crate::render::Progress;
+
+/// How many times the reference's error, as a root mean square, is to lie below the best point's.
+pub const MARGIN: f64 = 3.0;
+
+/// Renders that the reference begins with, each of as many samples as the largest point: with the
+/// same method its error is then a quarter of that point's, and 15 degrees of freedom tell it.
+pub const FIRST: u32 = 16;
+
+/// Means and squared deviations over independent renders (B. P. Welford, Technometrics 4, 1962).
+#[derive(Debug, Clone)]
+pub struct Own {
+    count: u32,
+    mean: [Vec<f64>; 3],
+    squares: [Vec<f64>; 3],
+}
+
+impl Own {
+    /// Nothing yet.
+    pub fn new(pixels: usize) -> Self {
+        Self {
+            count: 0,
+            mean: [(); 3].map(|()| vec![0.0; pixels]),
+            squares: [(); 3].map(|()| vec![0.0; pixels]),
+        }
+    }
+
+    /// Renders that have gone in.
+    pub fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// Adds a render; `false` if it was stopped before its end, which leaves all as it was.
+    pub fn add(&mut self, ready: &mut Ready, progress: &mut dyn Progress) -> bool {
+        let rendered = ready.render(self.count, progress);
+        if rendered.samples < ready.scene.image.spp {
+            return false;
+        }
+        self.count += 1;
+        let count = f64::from(self.count);
+        for (c, values) in planes(&rendered.rgb()).iter().enumerate() {
+            let sums = self.mean[c].iter_mut().zip(&mut self.squares[c]);
+            for ((mean, squares), value) in sums.zip(values) {
+                let before = value - *mean;
+                *mean += before / count;
+                *squares += before * (value - *mean);
+            }
+        }
+        true
+    }
+
+    /// The mean with its variance, after at least two renders.
+    pub fn reference(&self, size: [usize; 2]) -> Reference {
+        let count = f64::from(self.count);
+        let variance = |s: &Vec<f64>| s.iter().map(|s| s / (count - 1.0) / count).collect();
+        Reference {
+            name: "own".to_owned(),
+            size,
+            channels: self.mean.clone(),
+            variances: [0, 1, 2].map(|c| variance(&self.squares[c])),
+        }
+    }
+}
+
+/// Renders that a reference of `count` renders with this mean squared error needs to lie
+/// [`MARGIN`] times below a point's.
+pub fn needed(count: u32, mse: f64, best_point: f64) -> u32 {
+    let times = MARGIN * MARGIN * mse / best_point;
+    if times.is_finite() && times > 1.0 {
+        (f64::from(count) * times).ceil().min(f64::from(u32::MAX)) as u32
+    } else {
+        count
+    }
+}
+
+/// Writes a study's own reference as others are: colours, variances, and what it shows.
+///
+/// # Errors
+/// As [`exr::write`].
+pub fn write(
+    path: &Path,
+    reference: &Reference,
+    own: &Own,
+    ready: &Ready,
+    overrides: &str,
+) -> Result<(), crate::film::Error> {
+    let mut picture = Picture::new(reference.size[0], reference.size[1]);
+    let triples = |channels: &[Vec<f64>; 3]| {
+        let pixel = |i: usize| [0, 1, 2].map(|c| channels[c][i] as f32);
+        (0..channels[0].len()).map(pixel).collect::<Vec<_>>()
+    };
+    picture.push_triple(names::BEAUTY, names::RGB, &triples(&reference.channels));
+    picture.push_triple(VARIANCE, names::RGB, &triples(&reference.variances));
+    let source = &ready.scene.source;
+    let texts = [
+        ("sceneFile", source.path.clone()),
+        ("sceneHash", hash(&source.text)),
+        ("panel", ready.scene.panel.clone().unwrap_or_default()),
+        ("overrides", overrides.to_owned()),
+        ("settings", ready.name.clone()),
+    ];
+    for (name, value) in texts.into_iter().filter(|(_, value)| !value.is_empty()) {
+        let attribute = (name.to_owned(), Attribute::Text(value));
+        picture.attributes.push(attribute);
+    }
+    let counts = [("replicates", own.count()), ("spp", ready.scene.image.spp)];
+    for (name, value) in counts {
+        let value = Attribute::whole_number(value.into());
+        picture.attributes.push((name.to_owned(), value));
+    }
+    exr::write(path, &picture)
+}
+
+/// Reads a reference that a study has written, to go on with it.
+///
+/// # Errors
+/// [`ReferenceError`] where it is not that any more.
+pub fn read(path: &Path, size: [usize; 2]) -> Result<Reference, ReferenceError> {
+    let picture = exr::read(path)?;
+    let mut reference = Reference::of_picture(path, &picture, size)?;
+    reference.name = "own".to_owned();
+    Ok(reference)
+}

@@ -1,0 +1,219 @@
+//! A study from request to table: plan, reference, and then render after render.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use super::StudyError;
+use super::axis::{Axis, Key};
+use super::budget;
+use super::choice::{self, Choice, Found};
+use super::clock::Clock;
+use super::grid::Grid;
+use super::journal::Journal;
+use super::record::Record;
+use super::reference::Reference;
+use super::row::Row;
+use super::subject::{Ready, Subject};
+use super::work::{Timed, Work};
+use crate::film::{provenance, whole};
+use crate::render::memory;
+use crate::scene::SamplerKind;
+
+/// What is asked for.
+#[derive(Debug, Clone)]
+pub struct Request {
+    /// The scene and what is laid over it.
+    pub subject: Subject,
+    /// What to go over.
+    pub axes: Vec<Axis>,
+    /// Independent renders of each point, at least 2.
+    pub replicates: u32,
+    /// What to compare with.
+    pub reference: Choice,
+    /// Seconds that all may take.
+    pub budget: f64,
+    /// Threads that work.
+    pub threads: u32,
+    /// Where the results go.
+    pub directory: PathBuf,
+    /// The command that asked for it.
+    pub command: String,
+}
+
+/// Who is told how far a study is, and says whether it goes on.
+pub trait Watch {
+    /// A line about what was decided.
+    fn note(&mut self, line: &str);
+    /// What is being rendered, the share of all work that is done, and the seconds left.
+    fn at(&mut self, what: &str, share: f64, left: f64);
+    /// Whether to stop.
+    fn stops(&self) -> bool;
+}
+
+/// A study as far as it has come.
+#[derive(Debug)]
+pub struct Study {
+    /// The grid.
+    pub grid: Grid,
+    /// Its rows.
+    pub rows: Vec<Row>,
+    /// What they were compared with.
+    pub reference: Reference,
+    /// Where the reference comes from, in words.
+    pub about_reference: String,
+    /// Whether all points are there.
+    pub complete: bool,
+    /// Seconds since the beginning, and those of them spent rendering.
+    pub seconds: [f64; 2],
+}
+
+/// Samplers that a study goes over where nothing is said.
+const SAMPLERS: [&str; 3] = ["independent", "stratified", "sobol"];
+/// Carries a study out, or goes on with it.
+///
+/// # Errors
+/// [`StudyError`], before anything is rendered except where the disk fails later.
+pub fn run(request: &Request, watch: &mut dyn Watch) -> Result<Study, StudyError> {
+    let start = Instant::now();
+    if request.replicates < 2 {
+        return Err(StudyError::OneReplicate);
+    }
+    let base = request
+        .subject
+        .ready(&request.subject.overrides, String::new())?;
+    // Before there is a reference as large as the picture.
+    budget::check_memory(&base, memory::available())?;
+    let directory = |source| StudyError::Directory {
+        path: request.directory.clone(),
+        source,
+    };
+    let found = choice::find(request, &base.scene)?;
+    for note in &found.notes {
+        watch.note(note);
+    }
+    let said = said(request, &base, &found);
+    let record = request.directory.join("study.toml");
+    let resumed = Record::resume(&record, &said)?;
+    let goes_on = resumed.is_some();
+    let axes = axes(request, &base)?;
+    let (grid, timed) = match resumed {
+        Some(grid) => (grid, None),
+        None => planned(request, &axes, &found, watch)?,
+    };
+    let mut work = Work::new(request, grid, &found)?;
+    budget::check_memory(work.largest(), memory::available())?;
+    let timed = timed.unwrap_or_else(|| work.pilot(request.budget));
+    let cost = work.cost(&timed);
+    if !goes_on {
+        let grid = &work.grid;
+        budget::check(grid, &work.points, &work.samples, &cost, request.budget)?;
+    }
+    std::fs::create_dir_all(&request.directory).map_err(directory)?;
+    let record_text = Record {
+        request: said,
+        grid: work.grid.clone(),
+        command: request.command.clone(),
+    }
+    .text();
+    whole::write(&record, |file| {
+        use std::io::Write as _;
+        let written = file.write_all(record_text.as_bytes());
+        written.map_err(|source| crate::film::Error::Write {
+            path: record.clone(),
+            source,
+        })
+    })?;
+    let mut journal = Journal::open(&request.directory.join("study.csv"))?;
+    let mut clock = Clock::new(watch, work.remaining(&cost, &journal));
+    let Some((reference, about_reference)) = work.reference(found, &mut clock)? else {
+        return Err(StudyError::Interrupted);
+    };
+    let complete = work.go(request, &reference, &cost, &mut journal, &mut clock)?;
+    let rendering = clock.rendering;
+    Ok(Study {
+        grid: work.grid,
+        rows: journal.rows,
+        reference,
+        about_reference,
+        complete,
+        seconds: [start.elapsed().as_secs_f64(), rendering],
+    })
+}
+
+/// The axes asked for; the samplers where none is.
+fn axes(request: &Request, base: &Ready) -> Result<Vec<Axis>, StudyError> {
+    let mut axes = request.axes.clone();
+    let centre = base.scene.image.sampler == SamplerKind::Center;
+    if axes.is_empty() && !centre {
+        axes.push(Axis {
+            key: Key::Sampler,
+            values: SAMPLERS.map(str::to_owned).to_vec(),
+        });
+    }
+    let samplers = axes.iter().find(|axis| axis.key == Key::Sampler);
+    let centres = samplers.map_or([centre, !centre], |axis| {
+        let is_centre = |value: &String| value == "center";
+        [
+            axis.values.iter().any(is_centre),
+            !axis.values.iter().all(is_centre),
+        ]
+    });
+    if centres == [true, true] {
+        return Err(StudyError::TwoPictures);
+    }
+    Ok(axes)
+}
+
+/// The grid over these axes, its samples planned from a pilot where no axis is a number, and what
+/// that pilot measured.
+fn planned(
+    request: &Request,
+    axes: &[Axis],
+    found: &Found,
+    watch: &mut dyn Watch,
+) -> Result<(Grid, Option<Timed>), StudyError> {
+    if let Some(grid) = Grid::new(axes)? {
+        return Ok((grid, None));
+    }
+    // One point a curve, to be timed.
+    let short = Axis {
+        key: Key::Spp,
+        values: vec!["64".to_owned()],
+    };
+    let grid = Grid {
+        abscissa: short,
+        others: axes.to_vec(),
+    };
+    let mut work = Work::new(request, grid.clone(), found)?;
+    budget::check_memory(work.largest(), memory::available())?;
+    let timed = work.pilot(request.budget);
+    let abscissa = budget::plan(&work.cost(&timed), request.budget)?;
+    watch.note(&format!(
+        "planned from a pilot for {:.0} s: {} samples a pixel, {} renders each",
+        request.budget,
+        abscissa.values.join(", "),
+        request.replicates
+    ));
+    Ok((Grid { abscissa, ..grid }, Some(timed)))
+}
+
+/// What names the study: nothing that leaves the numbers as they are.
+fn said(request: &Request, base: &Ready, found: &Found) -> Vec<(String, String)> {
+    let source = &base.scene.source;
+    let set = request.subject.overrides.set.iter();
+    let set: Vec<_> = set.map(|(key, value)| format!("{key}={value}")).collect();
+    let over: Vec<_> = request.axes.iter().map(Axis::to_string).collect();
+    let overrides = &request.subject.overrides;
+    let pairs = [
+        ("scene", source.path.clone()),
+        ("scene_hash", provenance::hash(&source.text)),
+        ("panel", overrides.panel.clone().unwrap_or_default()),
+        ("set", set.join(" ")),
+        ("finder", overrides.finder.clone().unwrap_or_default()),
+        ("over", over.join(" ")),
+        ("replicates", request.replicates.to_string()),
+        ("reference", found.name()),
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+    ];
+    pairs.map(|(key, value)| (key.to_owned(), value)).to_vec()
+}

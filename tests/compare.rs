@@ -1,0 +1,416 @@
+//! `etalon compare` from outside, on pictures whose noise is known.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a failed unwrap is a failed test, and says where"
+)]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use etalon::film::provenance::hash;
+use etalon::film::spectral::channel_name;
+use etalon::film::{Attribute, Channel, Picture, exr, names};
+use etalon::stats::student;
+use etalon::study::compare::{LEVEL, Side, flip, judge};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Edge of the pictures, pixels.
+const EDGE: usize = 32;
+/// Independent parts of each pixel.
+const REPLICATES: usize = 8;
+/// Standard deviation of a part over the pixel's truth.
+const NOISE: f64 = 0.1;
+
+/// A picture to be drawn.
+#[derive(Clone, Copy)]
+struct Drawn {
+    seed: u64,
+    /// Factor on the truth of all pixels.
+    factor: f64,
+    /// Factor on the truth of the pixels of one block of 8×8.
+    block: f64,
+    /// Factor on the standard errors that are told.
+    told: f64,
+}
+
+const HONEST: Drawn = Drawn {
+    seed: 1,
+    factor: 1.0,
+    block: 1.0,
+    told: 1.0,
+};
+
+impl Drawn {
+    fn seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
+    }
+
+    /// R, G, B and a band with normal noise; standard errors, or variances as references have them.
+    fn picture(self, variances: bool) -> Picture {
+        let mut random = Pcg64Mcg::seed_from_u64(self.seed);
+        let mut normal = || {
+            let u: f64 = random.random::<f64>().max(1e-12);
+            let v: f64 = random.random();
+            (-2.0 * libm::log(u)).sqrt() * libm::cos(std::f64::consts::TAU * v)
+        };
+        let mut picture = Picture::new(EDGE, EDGE);
+        let band = channel_name(450.0);
+        for (index, name) in names::RGB.into_iter().chain([band.as_str()]).enumerate() {
+            let (mut values, mut errors) = (Vec::new(), Vec::new());
+            for pixel in 0..EDGE * EDGE {
+                let (x, y) = (pixel % EDGE, pixel / EDGE);
+                let inside = x < 8 && (8..16).contains(&y);
+                let truth = self.factor
+                    * if inside { self.block } else { 1.0 }
+                    * (index + 1) as f64
+                    * (1.0 + x as f64);
+                let parts: Vec<f64> = (0..REPLICATES)
+                    .map(|_| truth * (1.0 + NOISE * normal()))
+                    .collect();
+                let count = REPLICATES as f64;
+                let mean = parts.iter().sum::<f64>() / count;
+                let squares: f64 = parts.iter().map(|p| (p - mean) * (p - mean)).sum();
+                let variance = squares / (count * (count - 1.0)) * self.told * self.told;
+                values.push(mean as f32);
+                errors.push((if variances { variance } else { variance.sqrt() }) as f32);
+            }
+            let layer = if variances {
+                "variance"
+            } else {
+                names::STANDARD_ERROR
+            };
+            picture.channels.push(Channel::float(name, values));
+            let name = names::in_layer(layer, name);
+            picture.channels.push(Channel::float(name, errors));
+        }
+        set(
+            &mut picture,
+            "replicates",
+            Attribute::Int(REPLICATES as i32),
+        );
+        picture
+    }
+
+    fn side(self) -> Side {
+        Side::of_picture(Path::new("drawn"), self.picture(false)).unwrap()
+    }
+}
+
+fn set(picture: &mut Picture, name: &str, value: Attribute) {
+    picture.attributes.retain(|(other, _)| other != name);
+    picture.attributes.push((name.to_owned(), value));
+}
+
+fn text(text: &str) -> Attribute {
+    Attribute::Text(text.to_owned())
+}
+
+/// Runs the command on two pictures in a directory of their own.
+fn compare(a: &Picture, b: Option<&Picture>, arguments: &[&str]) -> (Output, TempDir) {
+    let directory = tempfile::tempdir().unwrap();
+    exr::write(&directory.path().join("a.exr"), a).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_etalon"));
+    command
+        .current_dir(directory.path())
+        .args(["compare", "a.exr"]);
+    if let Some(b) = b {
+        exr::write(&directory.path().join("b.exr"), b).unwrap();
+        command.arg("b.exr");
+    }
+    (command.args(arguments).output().unwrap(), directory)
+}
+
+#[track_caller]
+fn expect(output: &Output, code: i32, words: &[&str]) {
+    let said = format!(
+        "{}{}",
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert_eq!(output.status.code(), Some(code), "{said}");
+    for words in words {
+        assert!(said.contains(words), "{words:?} is not in {said}");
+    }
+}
+
+#[test]
+fn honest_pictures_are_consistent() {
+    let a = HONEST.picture(false);
+    let b = HONEST.seed(2).picture(true);
+    let (output, directory) = compare(&a, Some(&b), &["--heatmap", "difference.png"]);
+    expect(
+        &output,
+        0,
+        &[
+            "\nconsistent",
+            "caught from a bias of",
+            "relMSE",
+            "heat map",
+        ],
+    );
+    assert!(directory.path().join("difference.png").exists());
+}
+
+/// 2 % in the mean are eleven of its standard errors here, 5 % in one block are eight.
+#[test]
+fn a_bias_of_all_or_of_a_block_is_seen() {
+    let b = HONEST.seed(2).picture(true);
+    let all = Drawn {
+        factor: 1.02,
+        ..HONEST
+    };
+    let (output, _directory) = compare(&all.picture(false), Some(&b), &[]);
+    expect(
+        &output,
+        1,
+        &["NOT consistent", "the image mean is off by +"],
+    );
+    let block = Drawn {
+        block: 0.95,
+        ..HONEST
+    };
+    let (output, _directory) = compare(&block.picture(false), Some(&b), &[]);
+    expect(&output, 1, &["the block of 8x8 pixels at 0,8 is off by"]);
+}
+
+/// Error bars that are too small show in the distribution of the blocks, not in their means.
+#[test]
+fn dishonest_error_bars_are_seen() {
+    let told = |told, seed| Drawn {
+        told,
+        seed,
+        ..HONEST
+    };
+    let judged = judge(&told(0.5, 3).side(), &told(0.5, 4).side(), LEVEL).unwrap();
+    let rejected: Vec<&String> = judged.channels.iter().flat_map(|c| &c.rejected).collect();
+    assert!(
+        rejected.iter().any(|words| words.contains("distributed")),
+        "{rejected:?}"
+    );
+}
+
+/// Over many honest pairs the alarms are as frequent as the level says, and what is said to be
+/// caught 39 times in 40 is.
+#[test]
+fn level_and_power_are_as_stated() {
+    let (runs, level) = (200, 0.1);
+    let judged = |a: Drawn, b: Drawn| judge(&a.side(), &b.side(), level).unwrap();
+    let alarms = (0..runs)
+        .filter(|run| !judged(HONEST.seed(100 + 2 * run), HONEST.seed(101 + 2 * run)).consistent)
+        .count() as f64;
+    // 20 expected at most (tests of one picture are independent here), standard deviation 4.2.
+    assert!((3.0..37.0).contains(&alarms), "{alarms}");
+    let smallest = judged(HONEST, HONEST.seed(2)).channels[0].smallest_caught;
+    let runs = 100;
+    let biased = Drawn {
+        factor: 1.0 + smallest,
+        ..HONEST
+    };
+    let caught = (0..runs)
+        .filter(|run| {
+            let judged = judged(biased.seed(1000 + 2 * run), HONEST.seed(1001 + 2 * run));
+            judged.channels[0]
+                .rejected
+                .iter()
+                .any(|w| w.contains("mean"))
+        })
+        .count();
+    assert!(caught >= 92, "{caught} of {runs}");
+}
+
+#[test]
+fn a_number_can_be_the_truth() {
+    // The mean of 1 + x over 32 columns is 16.5; of R only, so the others are taken out.
+    let mut a = HONEST.picture(false);
+    a.channels
+        .retain(|c| c.name == "R" || c.name == "standard_error.R");
+    let (output, _directory) = compare(&a, None, &["--truth", "16.5"]);
+    expect(&output, 0, &["consistent"]);
+    let (output, _directory) = compare(&a, None, &["--truth", "16.6"]);
+    expect(&output, 1, &["NOT consistent"]);
+    let (output, _directory) = compare(&a, None, &[]);
+    expect(&output, 2, &["B.exr"]);
+}
+
+#[test]
+fn json_holds_everything() {
+    let b = HONEST.seed(2).picture(true);
+    let (output, _directory) = compare(&HONEST.picture(false), Some(&b), &["--json"]);
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["judgement"]["consistent"], true);
+    let names: Vec<&str> = json["channels"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|c| c["channel"].as_str().unwrap())
+        .collect();
+    assert_eq!(names, ["R", "G", "B", channel_name(450.0).as_str()]);
+    let metrics = &json["channels"][0]["metrics"];
+    for name in [
+        "mean_error",
+        "relative_mean_error",
+        "rmse",
+        "relmse",
+        "smape",
+    ] {
+        assert!(metrics[name]["value"].is_number(), "{name}");
+        assert!(metrics[name]["standard_error"].is_number(), "{name}");
+    }
+    // Two pictures with a noise of 0.1/√8 each: their relative squared error is 2 · 0.01/8, and the
+    // variance of the reference is half of it.
+    let relmse = metrics["relmse"]["value"].as_f64().unwrap();
+    let without = metrics["relmse_without_reference_variance"]["value"]
+        .as_f64()
+        .unwrap();
+    assert!((relmse / 2.5e-3 - 1.0).abs() < 0.2, "{relmse}");
+    assert!((without / 1.25e-3 - 1.0).abs() < 0.3, "{without}");
+}
+
+#[test]
+fn what_cannot_be_compared_is_said() {
+    let a = HONEST.picture(false);
+    let b = HONEST.seed(2).picture(true);
+    let refused = |b: &Picture, words: &[&str]| {
+        let (output, _directory) = compare(&a, Some(b), &[]);
+        expect(&output, 2, words);
+    };
+
+    let mut small = Picture::new(4, 4);
+    small.channels.push(Channel::float("R", vec![1.0; 16]));
+    refused(&small, &["a.exr has 32x32 pixels and b.exr has 4x4"]);
+
+    let mut other = Picture::new(EDGE, EDGE);
+    other
+        .channels
+        .push(Channel::float("depth.Z", vec![1.0; EDGE * EDGE]));
+    refused(&other, &["b.exr has neither R, G, B nor spectral channels"]);
+
+    let mut bands = Picture::new(EDGE, EDGE);
+    let name = channel_name(600.0);
+    bands
+        .channels
+        .push(Channel::float(name, vec![1.0; EDGE * EDGE]));
+    refused(&bands, &["share no channel", "S0.600,000000nm"]);
+
+    let mut broken = b.clone();
+    let mut values = vec![1.0f32; EDGE * EDGE];
+    values[3 * EDGE + 5] = f32::NAN;
+    broken.channels[0] = Channel::float("R", values);
+    refused(
+        &broken,
+        &["1 values that are not finite in channel R", "5,3"],
+    );
+
+    let mut bare = b.clone();
+    bare.channels.retain(|c| !c.name.starts_with("variance."));
+    refused(&bare, &["no verdict", "b.exr says no variance", "relMSE"]);
+
+    let mut single = b.clone();
+    set(&mut single, "replicates", Attribute::Int(1));
+    refused(&single, &["no verdict", "at least 2"]);
+
+    let mut negative = b;
+    negative.channels[1] = Channel::float("variance.R", vec![-1.0; EDGE * EDGE]);
+    refused(&negative, &["is none in channel R"]);
+}
+
+#[test]
+fn stale_references_and_other_scenes_are_told() {
+    let scene = "[camera]\n# another text\n";
+    let mut a = HONEST.picture(false);
+    let mut b = HONEST.seed(2).picture(true);
+    let of = |picture: &mut Picture, hash: &str| {
+        set(picture, "sceneFile", text("scene.toml"));
+        set(picture, "sceneHash", text(hash));
+    };
+    let run = |a: &Picture, b: &Picture| {
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::write(directory.path().join("scene.toml"), scene).unwrap();
+        exr::write(&directory.path().join("a.exr"), a).unwrap();
+        exr::write(&directory.path().join("b.exr"), b).unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_etalon"));
+        command.current_dir(directory.path());
+        command
+            .args(["compare", "a.exr", "b.exr"])
+            .output()
+            .unwrap()
+    };
+    of(&mut b, &hash("[camera]\n"));
+    expect(
+        &run(&a, &b),
+        2,
+        &["b.exr is stale", "scene.toml has changed since"],
+    );
+    of(&mut a, &hash(scene));
+    expect(
+        &run(&a, &b),
+        2,
+        &["not of the same scene file", "b.exr is stale"],
+    );
+    of(&mut b, &hash(scene));
+    expect(&run(&a, &b), 0, &["consistent"]);
+    set(&mut b, "panel", text("b"));
+    expect(
+        &run(&a, &b),
+        2,
+        &["a.exr is of panel none and b.exr of panel b"],
+    );
+}
+
+/// Values of the authors' own program, flip-evaluator 1.7 (`evaluate(…, "HDR", applyMagma=False)`), on
+/// the same picture; it computes in single precision.
+#[test]
+fn flip_is_that_of_its_authors() {
+    let (width, height) = (40, 30);
+    let (mut reference, mut test) = (Vec::new(), Vec::new());
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        let lamp = if x > 20 && y < 12 { 4.0 } else { 0.0 };
+        let pixel = [
+            0.8 * libm::exp(libm::sin(0.2 * x as f64)),
+            0.5 * libm::exp(libm::cos(0.3 * y as f64)),
+            0.3 + 0.02 * x as f64 + lamp,
+        ];
+        let factor = 1.0 + 0.06 * (((7 * x + 13 * y) % 5) as f64 - 2.0);
+        reference.push(pixel);
+        test.push([
+            pixel[0] * factor,
+            pixel[1] * factor,
+            pixel[2] * (2.0 - factor),
+        ]);
+    }
+    let map = flip(&reference, &test, width);
+    let mean = map.iter().sum::<f64>() / map.len() as f64;
+    for (own, authors) in [
+        (mean, 0.024_166_22),
+        (map[0], 0.109_879_8),
+        (map[10 * width + 25], 0.032_569_5),
+        (map[29 * width + 39], 0.127_311_7),
+    ] {
+        assert!((own / authors - 1.0).abs() < 3e-4, "{own} and {authors}");
+    }
+    assert!(
+        flip(&reference, &reference, width)
+            .iter()
+            .all(|d| *d == 0.0)
+    );
+}
+
+/// What `compare` calls a p-value is one.
+#[test]
+fn p_values_are_students() {
+    let judged = judge(&HONEST.side(), &HONEST.seed(2).side(), LEVEL).unwrap();
+    for channel in &judged.channels {
+        let score = channel.relative_bias / channel.standard_error;
+        let p = student::two_sided(score, channel.freedom);
+        // Rounding of single precision is allowed for, a millionth beside an error of 0.15 %.
+        assert!(
+            (channel.p_value - p).abs() < 0.01,
+            "{} and {p}",
+            channel.p_value
+        );
+    }
+}

@@ -1,0 +1,254 @@
+//! Invented expressions, sensible and senseless: none may panic, none may hang, and what is said to be
+//! proved must be so.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "identity placements of parsed fields cannot fail"
+)]
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use etalon::math::affine::Affine;
+use etalon::scene::{FinderChoice, Implicit};
+use etalon::shape::implicit::certified::Workspace;
+use etalon::shape::implicit::evaluate::Field;
+use etalon::shape::implicit::expression::parse;
+use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
+use etalon::shape::{Query, Ray};
+use glam::DVec3;
+use rand::{Rng, RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+const FUNCTIONS: [&str; 13] = [
+    "sqrt", "abs", "exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh",
+    "tanh",
+];
+/// Of these, the ones that are defined and continuous everywhere.
+const TOTAL: [&str; 6] = ["abs", "sin", "cos", "atan", "tanh", "sinh"];
+const CONSTANTS: [&str; 14] = [
+    "0",
+    "1",
+    "2",
+    "-1",
+    "1/3",
+    "9/80",
+    "pi",
+    "1e300",
+    "1e-300",
+    "1e400",
+    "(0/0)",
+    "(1/0)",
+    "1e-17",
+    "12345678901234567890",
+];
+const EXPONENTS: [&str; 12] = [
+    "2", "3", "-1", "-2", "0", "0.5", "1/3", "7", "20", "1000", "x", "100000",
+];
+
+fn pick<'a>(random: &mut impl Rng, from: &[&'a str]) -> &'a str {
+    from[random.random_range(0..from.len())]
+}
+
+/// An expression of some depth; a `tame` one has no poles, no undefined places and no huge numbers.
+fn invented(random: &mut Pcg64Mcg, depth: u32, tame: bool) -> String {
+    if depth == 0 || random.random_bool(0.1) {
+        return match (random.random_bool(0.7), tame) {
+            (true, _) => pick(random, &["x", "y", "z"]),
+            (false, true) => pick(random, &["1", "1/3", "0.25", "2"]),
+            (false, false) => pick(random, &CONSTANTS),
+        }
+        .to_owned();
+    }
+    let part = |random: &mut Pcg64Mcg| invented(random, depth - 1, tame);
+    let (a, b) = (part(random), part(random));
+    match random.random_range(0..10) {
+        0..5 => {
+            let signs: &[&str] = if tame {
+                &["+", "-", "*"]
+            } else {
+                &["+", "-", "*", "/"]
+            };
+            format!("({a} {} {b})", pick(random, signs))
+        }
+        5 => {
+            let exponents: &[&str] = if tame { &["2", "3"] } else { &EXPONENTS };
+            format!("({a})^{}", pick(random, exponents))
+        }
+        6..8 => {
+            let functions: &[&str] = if tame { &TOTAL } else { &FUNCTIONS };
+            format!("{}({a})", pick(random, functions))
+        }
+        8 => {
+            let functions: &[&str] = if tame {
+                &["min", "max"]
+            } else {
+                &["min", "max", "atan2"]
+            };
+            format!("{}({a}, {b})", pick(random, functions))
+        }
+        _ => format!("-{a}"),
+    }
+}
+
+fn placed(text: &str, finder: FinderChoice) -> Option<(PlacedImplicit, Field)> {
+    let field = parse(text, &[]).ok()?;
+    let scalar = Field::new(&field.tape);
+    let implicit = Implicit {
+        name: None,
+        field: Arc::new(field),
+        inside: [DVec3::splat(-1.0), DVec3::splat(1.0)],
+        closed: false,
+        finder,
+        steps: 64,
+    };
+    let placed = PlacedImplicit::new(&implicit, &Affine::IDENTITY).unwrap();
+    Some((placed, scalar))
+}
+
+/// A ray through the box; some lie in planes and along axes.
+fn ray(random: &mut Pcg64Mcg) -> Ray {
+    let mut direction = DVec3::ZERO;
+    while direction == DVec3::ZERO {
+        let mut one = || [-1.0, 0.0, random.random_range(-1.0..1.0)][random.random_range(0..3)];
+        direction = DVec3::new(one(), one(), one());
+    }
+    let mut one = || random.random_range(-0.9..0.9);
+    let target = DVec3::new(one(), one(), one());
+    let origin = target - direction * 4.0;
+    Ray { origin, direction }
+}
+
+fn ask(placed: &PlacedImplicit, ray: Ray, workspace: &mut Workspace) -> ImplicitAnswer {
+    let query = Query {
+        ray,
+        t_min: 0.0,
+        t_max: f64::INFINITY,
+    };
+    placed.first_hit(&query, workspace, &mut ImplicitTally::default())
+}
+
+const FINDERS: [FinderChoice; 4] = [
+    FinderChoice::Auto,
+    FinderChoice::Interval,
+    FinderChoice::SphereTrace,
+    FinderChoice::SignChange,
+];
+
+/// A millisecond or two is what the work bound allows; this is a machine that is busy otherwise.
+const LONGEST: Duration = Duration::from_secs(2);
+
+#[test]
+fn no_expression_panics_or_hangs() {
+    let mut random = Pcg64Mcg::seed_from_u64(8);
+    let mut workspace = Workspace::default();
+    let (mut fields, mut refused) = (0, 0);
+    for case in 0..600 {
+        let depth = random.random_range(1..7);
+        let text = invented(&mut random, depth, false);
+        let start = Instant::now();
+        let finder = FINDERS[case % FINDERS.len()];
+        let Some((placed, _)) = placed(&text, finder) else {
+            refused += 1;
+            continue;
+        };
+        fields += 1;
+        for _ in 0..6 {
+            let ray = ray(&mut random);
+            if let ImplicitAnswer::Found(hit) = ask(&placed, ray, &mut workspace) {
+                let sound = hit.t.is_finite() && hit.point.is_finite();
+                let unit = hit.normal.is_none_or(|n| (n.length() - 1.0).abs() < 1e-12);
+                assert!(sound && unit, "{text}: {hit:?}");
+            }
+        }
+        assert!(start.elapsed() < LONGEST, "{text}: {:?}", start.elapsed());
+    }
+    println!("{fields} fields, {refused} refused");
+    assert!(
+        fields > 200 && refused > 50,
+        "{fields} fields, {refused} refused"
+    );
+}
+
+/// Where a tame field changes its sign between two points of a ray, clear of its rounding, the first
+/// hit is not behind them, and none is no answer.
+#[test]
+fn no_change_of_sign_is_called_absent() {
+    let mut random = Pcg64Mcg::seed_from_u64(9);
+    let mut workspace = Workspace::default();
+    let (mut changes, mut undecided) = (0, 0);
+    for case in 0..400 {
+        let depth = random.random_range(2..6);
+        let text = invented(&mut random, depth, true);
+        let finder = FINDERS[case % 3];
+        let Some((placed, field)) = placed(&text, finder) else {
+            continue;
+        };
+        for _ in 0..6 {
+            let ray = ray(&mut random);
+            let at = |t: f64| ray.origin + ray.direction * t;
+            let steps = (0..=256).map(|i| f64::from(i) / 32.0);
+            let inside = steps.filter(|t| at(*t).abs().max_element() < 1.0);
+            let values: Vec<(f64, f64)> = inside.map(|t| (t, field.value(at(t)))).collect();
+            let changed = values.windows(2).find(|pair| {
+                let [(_, a), (_, b)] = [pair[0], pair[1]];
+                a * b < 0.0 && a.abs().min(b.abs()) > 1e-9 && a.abs().max(b.abs()) < 1e3
+            });
+            let Some(&[_, (end, _)]) = changed else {
+                continue;
+            };
+            changes += 1;
+            match ask(&placed, ray, &mut workspace) {
+                ImplicitAnswer::Found(hit) => assert!(hit.enclosure[0] <= end, "{text}: {hit:?}"),
+                ImplicitAnswer::Undecided => undecided += 1,
+                ImplicitAnswer::Absent => panic!("{text}: absent before {end} on {ray:?}"),
+            }
+        }
+    }
+    println!("{changes} changes of sign, {undecided} undecided");
+    assert!(
+        changes > 300 && undecided < changes / 2,
+        "{changes}, {undecided}"
+    );
+}
+
+/// What is written wrongly, or means nothing, is an error that says where or why.
+#[test]
+fn senseless_expressions_are_errors() {
+    let deep = format!("{}x{}", "(".repeat(5_000), ")".repeat(5_000));
+    let long = vec!["x"; 10_000].join("*y+");
+    for text in [
+        "",
+        " ",
+        "0",
+        "x-x",
+        "0*x",
+        "1/0",
+        "x/0",
+        "sqrt(-1)*x",
+        "log(0)+x",
+        "max(x, 0/0)",
+        "atan2(0, 0)*x",
+        "min(x, x) - x",
+        "x^100000",
+        "x y",
+        "3x",
+        "(x",
+        "x)",
+        "sin x",
+        "1e",
+        "x = 1",
+        "floor(x)",
+        "NaN*x",
+        "inf*x",
+        "é",
+        "x..y",
+        &deep,
+        &long,
+        &"-".repeat(5_000),
+    ] {
+        let error = parse(text, &[]).err();
+        let error = error.unwrap_or_else(|| panic!("{text:.40} is an expression"));
+        assert!(!error.to_string().is_empty());
+    }
+}

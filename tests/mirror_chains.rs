@@ -1,0 +1,208 @@
+//! How long a path between two mirrors stays true: `tests/data/mirrors.csv`, path lengths from
+//! bounce to bounce in 400-digit arithmetic.
+//!
+//! Two spheres of radius 1 stand g apart. One bounce and the way to the other sphere multiply what is
+//! off by λ = 1 + g + √((1 + g)² − 1), the larger eigenvalue of the ray matrix of a convex mirror of
+//! radius 1 and a gap g (trace 2 + 2g, determinant 1; Gerrard and Burch 1975, ch. II).
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a malformed oracle file must fail the test"
+)]
+
+use std::path::Path;
+
+use etalon::integrate::bounce::{Places, bounce};
+use etalon::integrate::intersect::{NOTHING, Rungs};
+use etalon::integrate::model::Model;
+use etalon::integrate::pool::{IntField, Pool, RealField, Rows, flags};
+use etalon::math::affine::Affine;
+use etalon::math::lanes::{Double, Lanes, Scalar, Single};
+use etalon::plan::choose::Precision;
+use etalon::plan::{Plan, Tables};
+use etalon::scene::{Overrides, parse};
+use etalon::shape::{Placed, Ray, ShapeKind, Start, Tally};
+use fearless_simd::Level;
+
+use crate::oracle_support::{Row, number, rows, vector};
+
+/// The error that ends a count of bounces.
+const ERROR: f64 = 1e-6;
+/// Wavelengths of the path, which sees only mirrors that reflect everything.
+const WAVELENGTHS: usize = 4;
+
+struct Chain {
+    id: String,
+    gap: f64,
+    ray: Ray,
+    /// Path lengths.
+    each: Vec<f64>,
+}
+
+fn chain(row: &Row) -> Chain {
+    let each = row["t_each"].split(';').map(|t| t.parse().unwrap());
+    Chain {
+        id: row["id"].clone(),
+        gap: number(row, "gap"),
+        ray: Ray {
+            origin: vector(row, ["ox", "oy", "oz"]),
+            direction: vector(row, ["dx", "dy", "dz"]),
+        },
+        each: each.collect(),
+    }
+}
+
+impl Chain {
+    /// Distance of the centres from the origin.
+    fn centre(&self) -> f64 {
+        1.0 + self.gap / 2.0
+    }
+
+    /// Both mirrors, seen from where the chain begins.
+    fn plan(&self, precision: &str) -> Plan {
+        let mirror = |x: f64| {
+            format!(
+                "[[object]]\nshape = \"sphere\"\nmaterial = \"mirror\"\n\
+                 transform = [{{ translate = [{x:?}, 0, 0] }}]\n"
+            )
+        };
+        let text = format!(
+            "[camera]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nfov = 40\n\
+             [image]\nsize = [256, 256]\nspp = 1\nprecision = \"{precision}\"\n\
+             wavelengths = {WAVELENGTHS}\n\
+             [materials]\nmirror = {{ mirror = {{ ideal = 1 }} }}\n{}{}",
+            mirror(-self.centre()),
+            mirror(self.centre())
+        );
+        let scene = parse("mirrors.toml", &text, Path::new(""), &Overrides::default()).unwrap();
+        Plan::new(&scene, false).unwrap()
+    }
+
+    /// Bounces before the first path length that is off by more than [`ERROR`], or misses.
+    fn score(&self, lengths: &[f64]) -> usize {
+        let right = |(a, b): &(&f64, &f64)| (**a - **b).abs() <= ERROR;
+        self.each.iter().zip(lengths).take_while(right).count()
+    }
+
+    /// Growth of an error from bounce to bounce.
+    fn growth(&self) -> f64 {
+        let half_trace = 1.0 + self.gap;
+        half_trace + (half_trace * half_trace - 1.0).sqrt()
+    }
+}
+
+/// Path lengths by the step of the path loop, as it stands in the library.
+fn by_the_loop(plan: &Plan, chain: &Chain) -> Vec<f64> {
+    let level = Level::new();
+    // The bits are the same on every instruction set; the one that all machines have will do.
+    #[cfg(target_arch = "x86_64")]
+    let simd = level.as_sse2().unwrap();
+    #[cfg(target_arch = "aarch64")]
+    let simd = level.as_neon().unwrap();
+    match &plan.tables {
+        Tables::Single(tables) => follow(Single(simd), &tables.0, chain),
+        Tables::Double(tables) => follow(Double(simd), &tables.0, chain),
+    }
+}
+
+#[inline(never)]
+fn follow<L: Lanes>(l: L, model: &Model<L::Scalar>, chain: &Chain) -> Vec<f64> {
+    let mut pool = Pool::<L::Scalar>::new(L::COUNT);
+    let mut rows = Rows::<L::Scalar, WAVELENGTHS>::new(1);
+    for (field, v) in [
+        (RealField::Origin, chain.ray.origin),
+        (RealField::Direction, chain.ray.direction),
+    ] {
+        for axis in 0..3 {
+            pool.set_real(l, field, axis, 0, l.real(v[axis]));
+        }
+    }
+    pool.set_int(l, IntField::Departure, 0, l.int(NOTHING));
+    pool.set_int(l, IntField::Flags, 0, l.int(flags::SPECULAR));
+    let (mut beyond, mut rungs) = (Vec::new(), Rungs::default());
+    let mut vertices = Some(Vec::new());
+    for _ in &chain.each {
+        pool.length = 1;
+        // Roulette is for later segments only.
+        pool.set_int(l, IntField::Depth, 0, l.int(0));
+        let places = Places { at: 0, to: 0 };
+        let went_on = l.vectorize(
+            #[inline(always)]
+            || {
+                let beyond = &mut beyond;
+                bounce(
+                    l,
+                    model,
+                    &mut pool,
+                    &mut rows,
+                    beyond,
+                    places,
+                    &mut rungs,
+                    &mut vertices,
+                )
+            },
+        );
+        if went_on == 0 {
+            break;
+        }
+    }
+    vertices.unwrap().iter().map(|v| v.distance).collect()
+}
+
+/// Path lengths by certified hits whose points and normals are rounded to f64, as `trace` prints
+/// them.
+fn by_printed_hits(chain: &Chain) -> Vec<f64> {
+    let spheres = [-chain.centre(), chain.centre()].map(|x| {
+        let mut to_world = Affine::IDENTITY;
+        to_world.rows[0][3] = x;
+        Placed::new(ShapeKind::Sphere, &to_world).unwrap()
+    });
+    let (mut ray, mut lengths) = (chain.ray, Vec::new());
+    // The first mirror is the right one, and then they take turns.
+    for (k, _) in chain.each.iter().enumerate() {
+        let sphere = &spheres[(k + 1) % 2];
+        let Some(hit) = sphere.first_hit(&ray, 0.0, Start::Free, &mut Tally::default()) else {
+            break;
+        };
+        lengths.push(hit.t);
+        let cosine = ray.direction.dot(hit.normal);
+        ray = Ray {
+            origin: hit.point,
+            direction: ray.direction - hit.normal * (2.0 * cosine),
+        };
+    }
+    lengths
+}
+
+#[test]
+fn chains_of_mirrors_stay_true_as_long_as_their_digits_last() {
+    let mut table = String::from("| chain | gap | bounces | f32 | f64 | default | trace |\n");
+    for row in &rows(include_str!("data/mirrors.csv")) {
+        let chain = chain(row);
+        let plans = ["f32", "f64", "auto"].map(|precision| chain.plan(precision));
+        let [single, double, default] = plans
+            .each_ref()
+            .map(|plan| chain.score(&by_the_loop(plan, &chain)));
+        let printed = chain.score(&by_printed_hits(&chain));
+        let name = match plans[2].choices.precision {
+            Precision::Single => "f32",
+            Precision::Double => "f64",
+        };
+        table += &format!(
+            "| {} | {:e} | {} | {single} | {double} | {default} ({name}) | {printed} |\n",
+            chain.id,
+            chain.gap,
+            chain.each.len()
+        );
+        // Each bounce adds some roundings of coordinates up to 2, and what is off grows from bounce to
+        // bounce: 2⁶ u n λⁿ bounds it with room to spare where that is small.
+        let count = chain.each.len();
+        let bound = 64.0 * f64::ROUNDOFF * count as f64 * chain.growth().powi(count as i32);
+        assert!(bound < ERROR, "{}: {bound:e}", chain.id);
+        assert_eq!([double, printed], [count; 2], "{}", chain.id);
+        // In single precision the same bound allows nothing; the plan takes it only where no gap is
+        // at stake.
+        assert!(default >= single, "{}: {default} and {single}", chain.id);
+    }
+    println!("{table}");
+}

@@ -1,0 +1,236 @@
+//! Renders that stop at a wanted error: unbiased, and near what was asked for; and error bars of
+//! blocks that hold as often as they say.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that cannot go on has failed, and the panic says where"
+)]
+
+use std::path::PathBuf;
+
+use etalon::render::goal::{Goal, Target, choose, reached};
+use etalon::render::{Instructions, Rendered};
+use etalon::scene::Overrides;
+use etalon::stats::Estimate;
+use etalon::study::coverage::{Coverage, Survey, cover};
+use etalon::study::subject::{Ready, Subject, Unwatched};
+use tempfile::TempDir;
+
+use crate::statistics_support::moments;
+
+/// A small lamp over a floor, in a black room: most paths bring nothing.
+const SCENE: &str = r#"
+[camera]
+from = [0, 2, 4]
+to = [0, 0, 0]
+fov = 50
+[image]
+size = [8, 8]
+spp = 8
+max_depth = 3
+[materials]
+floor = { diffuse = 0.7 }
+lamp = { emit = 20 }
+[[object]]
+shape = { rectangle = { size = [3, 3] } }
+material = "floor"
+transform = [{ rotate_x = -90 }]
+[[object]]
+shape = { sphere = { radius = 0.15 } }
+material = "lamp"
+transform = [{ translate = [0.4, 0.6, 0] }]
+"#;
+
+struct Studio {
+    _directory: TempDir,
+    subject: Subject,
+}
+
+impl Studio {
+    fn new() -> Self {
+        let directory = tempfile::tempdir().unwrap();
+        let path: PathBuf = directory.path().join("lamp.toml");
+        std::fs::write(&path, SCENE).unwrap();
+        Self {
+            _directory: directory,
+            subject: Subject {
+                path,
+                overrides: Overrides::default(),
+                instructions: Instructions::best(),
+            },
+        }
+    }
+
+    fn ready(&self, settings: &[(&str, &str)]) -> Ready {
+        let set = settings.iter();
+        let set = set.map(|(key, value)| (format!("image.{key}"), (*value).to_owned()));
+        let overrides = Overrides {
+            set: set.collect(),
+            ..Overrides::default()
+        };
+        self.subject.ready(&overrides, "test".to_owned()).unwrap()
+    }
+}
+
+fn render(ready: &mut Ready, seed: u64, samples: u32) -> Rendered {
+    ready.render_for(seed, samples, None, &mut Unwatched)
+}
+
+const WANTED: f64 = 0.05;
+const RENDERS: u64 = 1000;
+/// Of each of the two tests of means below: one false alarm in ten thousand.
+const LEVEL: f64 = 1e-4;
+
+/// The mean of many renders with a fixed number of samples, and its error.
+fn truth(ready: &mut Ready) -> Estimate {
+    let means: Vec<f64> = (0..200)
+        .map(|i| render(ready, 1_000_000 + i, 512).mean_luminance().value)
+        .collect();
+    Estimate::mean(&means)
+}
+
+#[test]
+fn a_goal_is_reached_without_bending_the_picture() {
+    let studio = Studio::new();
+    let mut ready = studio.ready(&[("sampler", "independent")]);
+    let truth = truth(&mut ready);
+    let goal = Goal {
+        target: Target::Image,
+        error: WANTED,
+    };
+    let (mut means, mut samples) = (Vec::new(), 0);
+    for run in 0..RENDERS {
+        let chosen = choose(goal, 64, 1 << 20, |samples, number| {
+            let seed = (run << 20) + 1 + u64::from(number);
+            Some(render(&mut ready, seed, samples))
+        })
+        .unwrap();
+        assert!(!chosen.short);
+        samples += u64::from(chosen.samples);
+        let rendered = render(&mut ready, run << 20, chosen.samples);
+        means.push(rendered.mean_luminance().value);
+    }
+    let stopped = Estimate::mean(&means);
+    let p = stopped.minus(&truth).p_value(0.0, 0.0);
+    assert!(p > LEVEL, "biased: {stopped:?}, {truth:?}, p = {p}");
+    let (mean, variance) = moments(&means);
+    let error = variance.sqrt() / mean;
+    assert!(
+        (error / WANTED - 1.0).abs() < 0.2,
+        "{error} reached, {WANTED} asked for, {} spp on average",
+        samples / RENDERS
+    );
+}
+
+#[test]
+fn a_render_that_stops_on_its_own_samples_would_be_noticed() {
+    let studio = Studio::new();
+    let mut ready = studio.ready(&[("sampler", "independent")]);
+    let truth = truth(&mut ready);
+    // Eight replicates of four pixels' worth: small pilots that end as soon as they look good.
+    let mut means = Vec::new();
+    for run in 0..RENDERS {
+        let mut samples = 2;
+        loop {
+            let rendered = render(&mut ready, run, samples);
+            if reached(&rendered, Target::Image) <= 3.0 * WANTED || samples >= 64 {
+                means.push(rendered.mean_luminance().value);
+                break;
+            }
+            samples += 2;
+        }
+    }
+    let stopped = Estimate::mean(&means);
+    let p = stopped.minus(&truth).p_value(0.0, 0.0);
+    assert!(p < LEVEL, "{stopped:?}, {truth:?}, p = {p}");
+}
+
+#[test]
+fn the_worst_block_reaches_its_goal_too() {
+    let studio = Studio::new();
+    for sampler in ["independent", "sobol"] {
+        let mut ready = studio.ready(&[("sampler", sampler), ("size", "[24, 16]")]);
+        let goal = Goal {
+            target: Target::Block,
+            error: 0.05,
+        };
+        let choose = |ready: &mut Ready, run: u64| {
+            choose(goal, 24 * 16, 1 << 20, |samples, number| {
+                Some(render(ready, (run << 20) + 1 + u64::from(number), samples))
+            })
+        };
+        let chosen = choose(&mut ready, 1).unwrap();
+        // The error that this number of samples truly has, from many renders of it.
+        let mut sums: Vec<f64> = Vec::new();
+        const MANY: u64 = 100;
+        for run in 0..MANY {
+            let rendered = render(&mut ready, (2 << 20) + run, chosen.samples);
+            let blocks = etalon::render::blocks::luminances(&rendered);
+            sums.resize(blocks.len(), 0.0);
+            for (sum, block) in sums.iter_mut().zip(&blocks) {
+                let relative = block.standard_error / block.value.max(f64::MIN_POSITIVE);
+                *sum += relative * relative / MANY as f64;
+            }
+        }
+        let worst = sums.into_iter().fold(0.0, f64::max).sqrt();
+        assert!(
+            (worst / goal.error - 1.0).abs() < 0.2,
+            "{sampler}: {worst} with {} spp",
+            chosen.samples
+        );
+    }
+}
+
+#[test]
+fn a_goal_that_needs_more_than_can_be_had_says_so() {
+    let studio = Studio::new();
+    let mut ready = studio.ready(&[]);
+    let goal = Goal {
+        target: Target::Image,
+        error: 1e-6,
+    };
+    let chosen = choose(goal, 64, 64, |samples, number| {
+        Some(render(&mut ready, u64::from(number), samples))
+    });
+    let chosen = chosen.unwrap();
+    assert!(chosen.short);
+    assert_eq!(chosen.samples, 64);
+    assert_eq!(choose(goal, 64, 64, |_, _| None), None, "stopped");
+}
+
+#[test]
+fn intervals_of_blocks_hold_as_often_as_they_say() {
+    let studio = Studio::new();
+    let size = ("size", "[64, 48]");
+    let mut survey = studio.ready(&[
+        ("sampler", "independent"),
+        ("spp", "64"),
+        ("replicates", "64"),
+        size,
+    ]);
+    let blocks = Survey::new(&mut survey, 16).blocks();
+    for sampler in ["independent", "stratified", "sobol"] {
+        let mut ready = studio.ready(&[("sampler", sampler), ("spp", "64"), size]);
+        let test = |ready: &mut Ready, blocks: &[_]| {
+            (0..24)
+                .map(|render| cover(ready, render, blocks))
+                .fold(Coverage::default(), Coverage::plus)
+        };
+        let honest = test(&mut ready, &blocks).enough;
+        // A binomial standard error of 1.3 % with 300 blocks, three of those, and the percentage
+        // point that the threshold leaves.
+        assert!(honest.all >= 300, "{honest:?}");
+        assert!(
+            (0.90..=1.0).contains(&honest.share()),
+            "{sampler}: {}",
+            honest.share()
+        );
+        // A truth that is off by three standard errors is held in few.
+        let mut wrong = blocks.clone();
+        for block in wrong.iter_mut().flatten() {
+            block.truth.value *= 1.5;
+        }
+        let noticed = test(&mut ready, &wrong).enough;
+        assert!(noticed.share() < 0.5, "{sampler}: {}", noticed.share());
+    }
+}

@@ -1,0 +1,170 @@
+//! Power laws: intervals that hold as often as they say, wrong laws that are caught, and the laws
+//! of the samplers.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a fit that cannot be had has failed, and the panic says where"
+)]
+
+use etalon::sample::Slot;
+use etalon::scene::SamplerKind;
+use etalon::stats::slope::{Replicates, Slope};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+use crate::lanes_support::Precision;
+use crate::sampling::{What, pixels_of, sequence};
+
+/// Values about a power law: `spread` is their relative standard deviation.
+fn planted(rng: &mut Pcg64Mcg, slope: f64, spread: f64, replicates: usize) -> Vec<Replicates> {
+    // A sum of twelve uniform numbers is as good as normal here (variance 1).
+    let mut normal = || (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0;
+    (0..7)
+        .map(|k| {
+            let x = f64::from(1u32 << k);
+            let value = 3.0 * x.powf(slope);
+            let values = (0..replicates).map(|_| value * (1.0 + spread * normal()));
+            Replicates {
+                x,
+                values: values.collect(),
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn intervals_of_slopes_hold_as_often_as_they_say() {
+    const TRIALS: u32 = 2000;
+    let mut rng = Pcg64Mcg::seed_from_u64(1);
+    let mut held = 0;
+    for _ in 0..TRIALS {
+        let fit = Slope::fit(&planted(&mut rng, -1.0, 0.1, 16)).unwrap();
+        let [low, high] = fit.interval();
+        held += u32::from(low <= -1.0 && -1.0 <= high);
+    }
+    // 95 % with a binomial standard error of 0.5 % (2000 trials); weights that are estimated from
+    // 16 values have 15 degrees of freedom, which lengthens the true spread by up to 1/15 and may
+    // cost 1.5 %; beyond four standard errors of that it is wrong.
+    let share = f64::from(held) / f64::from(TRIALS);
+    assert!((0.915..=0.97).contains(&share), "{share}");
+}
+
+#[test]
+fn a_wrong_slope_is_caught() {
+    let mut rng = Pcg64Mcg::seed_from_u64(2);
+    let fit = Slope::fit(&planted(&mut rng, -0.9, 0.1, 16)).unwrap();
+    let [low, high] = fit.interval();
+    assert!(low <= -0.9 && -0.9 <= high && fit.straight, "{fit:?}");
+    // A mean square that falls with −0.9 is no independent sampling.
+    assert!(high < -0.8 && low > -1.0, "{fit:?}");
+    let root = fit.of_root(2.0);
+    assert!((root.value + 0.45).abs() < 0.05 && root.interval()[0] > -0.5);
+}
+
+#[test]
+fn a_curve_that_bends_is_no_line() {
+    let mut rng = Pcg64Mcg::seed_from_u64(3);
+    let mut points = planted(&mut rng, -1.0, 0.02, 16);
+    assert!(Slope::fit(&points).unwrap().straight);
+    // A bias that does not fall.
+    for point in &mut points {
+        for value in &mut point.values {
+            *value += 0.1;
+        }
+    }
+    let bent = Slope::fit(&points).unwrap();
+    assert!(!bent.straight);
+    assert!(bent.interval()[1] - bent.interval()[0] > 0.1, "{bent:?}");
+}
+
+#[test]
+fn what_has_no_law_has_no_slope() {
+    let point = |x: f64, values: &[f64]| Replicates {
+        x,
+        values: values.to_vec(),
+    };
+    assert_eq!(Slope::fit(&[]), None);
+    assert_eq!(Slope::fit(&[point(1.0, &[1.0, 1.1])]), None);
+    // Means that are not above zero, single replicates, no spread.
+    let dead = [
+        point(1.0, &[-1.0, 0.5]),
+        point(2.0, &[1.0]),
+        point(4.0, &[1.0, 1.0]),
+        point(8.0, &[0.9, 1.1]),
+    ];
+    assert_eq!(Slope::fit(&dead), None);
+}
+
+/// Root-mean-square slope of a sampler's error in the mean of f over the square, the truth given,
+/// for numbers of samples that are squares and powers of two.
+fn slope_of(
+    kind: SamplerKind,
+    f: impl Fn(u32, f64, f64) -> f64,
+    truth: impl Fn(u32) -> f64,
+) -> Slope {
+    const PIXELS: u32 = 64;
+    const SETS: u64 = 16;
+    let square_error = |n: u32, seed: u64| {
+        let what = What::Pair(Slot::Light, 0);
+        let drawn = pixels_of(Precision::Double, sequence(kind, seed, n), what, PIXELS, n);
+        let errors = (0..PIXELS)
+            .zip(drawn.chunks(n as usize))
+            .map(|(pixel, points)| {
+                let sum: f64 = points.iter().map(|p| f(pixel, p[0], p[1])).sum();
+                let error = sum / f64::from(n) - truth(pixel);
+                error * error
+            });
+        errors.sum::<f64>() / f64::from(PIXELS)
+    };
+    let points: Vec<Replicates> = [16u32, 64, 256, 1024]
+        .iter()
+        .map(|&n| Replicates {
+            x: f64::from(n),
+            values: (0..SETS).map(|seed| square_error(n, 100 + seed)).collect(),
+        })
+        .collect();
+    Slope::fit(&points).unwrap().of_root(2.0)
+}
+
+/// Whether a slope is within its own interval of what theory says, give or take `bend`.
+fn agrees(slope: Slope, theory: f64, bend: f64) {
+    let [low, high] = slope.interval();
+    assert!(
+        low - bend <= theory && theory <= high + bend,
+        "{theory}: {slope:?}"
+    );
+    // The interval is narrow enough to tell −1/2, −3/4, −1 and −3/2 apart.
+    assert!(high - low < 0.12, "{slope:?}");
+}
+
+#[test]
+fn samplers_have_the_slopes_of_theory_where_the_integrand_is_smooth() {
+    // The sum of both coordinates has an exact law with each: N independent points have the
+    // variance 1/6N, jittered ones 1/6N² (each alone in its square of area 1/N), scrambled nets,
+    // whose coordinates are stratified N times each, 1/6N³.
+    let sum = |_: u32, u: f64, v: f64| u + v;
+    let truth = |_: u32| 1.0;
+    agrees(slope_of(SamplerKind::Independent, sum, truth), -0.5, 0.0);
+    agrees(slope_of(SamplerKind::Stratified, sum, truth), -1.0, 0.0);
+    agrees(slope_of(SamplerKind::Sobol, sum, truth), -1.5, 0.0);
+}
+
+#[test]
+fn samplers_fall_back_at_edges() {
+    // A straight edge through the middle, turned another way in each pixel: of N squares about √N
+    // are cut, each by chance. Squares at the border are cut in part only, a number of them that
+    // does not grow: about one of the four that are cut at N = 16 and of the 32 at N = 1024, which
+    // bends the law by ln(1 + 1/8)/ln 64 = 0.03.
+    let edge = |pixel: u32, u: f64, v: f64| {
+        let angle = 0.1 + f64::from(pixel) * 0.6180339887;
+        f64::from(u8::from(
+            (u - 0.5) * angle.cos() + (v - 0.5) * angle.sin() < 0.0,
+        ))
+    };
+    // A line through the centre halves the square.
+    let truth = |_: u32| 0.5;
+    agrees(slope_of(SamplerKind::Independent, edge, truth), -0.5, 0.0);
+    agrees(slope_of(SamplerKind::Stratified, edge, truth), -0.75, 0.03);
+    // Boxes of a net are of all shapes, and those that an edge cuts are no more than of squares.
+    agrees(slope_of(SamplerKind::Sobol, edge, truth), -0.75, 0.06);
+}

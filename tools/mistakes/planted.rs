@@ -1,0 +1,274 @@
+//! Deliberate mistakes, planted in the tables of a finished plan: the loop that ships runs unchanged.
+//!
+//! Where a mistake is a factor that depends on the direction, it is planted in a scene where all
+//! directions are alike, so that the tables can hold exactly what the wrong code would compute: the
+//! cosine under parallel light, the Fresnel term under one angle of incidence.
+
+use etalon::camera::LaneCamera;
+use etalon::integrate::model::{Model, Scatter};
+use etalon::integrate::parts::Parts;
+use etalon::light::{LightShape, SmallLights};
+use etalon::material::fresnel;
+use etalon::math::lanes::Scalar;
+use etalon::plan::{Plan, Tables};
+use etalon::scene::{Scene, Surface};
+use etalon::spectrum::grid::{CELLS, Cumulative, LONGEST, SHORTEST};
+
+/// What can be wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mistake {
+    /// A material reflects half a per cent too much.
+    Reflectance,
+    /// Sampled parallel light lacks the cosine.
+    Cosine,
+    /// Metals count one polarisation twice.
+    Polarisation,
+    /// The wavelength density is off by a smooth 1 %.
+    Wavelengths,
+    /// The lens is 1 % too large.
+    Lens,
+    /// Paths end a bounce early.
+    Bounce,
+    /// Normals keep the length that shear gives them.
+    Normals,
+    /// The lights are believed to be chosen with equal probability.
+    LightChoice,
+}
+
+/// All of them, with the words of the table.
+pub const MISTAKES: [(Mistake, &str); 8] = [
+    (
+        Mistake::Reflectance,
+        "a reflectance 0.5 % too high in one material",
+    ),
+    (Mistake::Cosine, "cosine forgotten in one lobe"),
+    (
+        Mistake::Polarisation,
+        "Fresnel term with one polarisation counted twice",
+    ),
+    (Mistake::Wavelengths, "wavelength pdf off by a smooth 1 %"),
+    (Mistake::Lens, "lens radius 1 % off"),
+    (Mistake::Bounce, "one bounce too few"),
+    (Mistake::Normals, "normals not renormalised under shear"),
+    (
+        Mistake::LightChoice,
+        "lights chosen with another probability than believed",
+    ),
+];
+
+/// Wavelengths per path of all scenes here.
+const WAVELENGTHS: usize = 8;
+/// Relative error of the wavelength density at its worst.
+const DENSITY_ERROR: f64 = 0.01;
+/// Angle of incidence of the scene with metal, degrees.
+const INCIDENCE: f64 = 60.0;
+
+/// Plants a mistake wherever the plan has a place for it; says whether it had.
+pub fn plant(mistake: Mistake, scene: &Scene, plan: &mut Plan) -> bool {
+    assert_eq!(plan.choices.wavelengths as usize, WAVELENGTHS);
+    match &mut plan.tables {
+        Tables::Single(tables) => planted(mistake, scene, &mut tables.0),
+        Tables::Double(tables) => planted(mistake, scene, &mut tables.0),
+    }
+}
+
+fn planted<T: Scalar>(mistake: Mistake, scene: &Scene, model: &mut Model<T>) -> bool {
+    match mistake {
+        Mistake::Reflectance => reflectance(model),
+        Mistake::Cosine => cosine(scene, model),
+        Mistake::Polarisation => polarisation(scene, model),
+        Mistake::Wavelengths => wavelengths(model),
+        Mistake::Lens => lens(scene, model),
+        Mistake::Bounce => {
+            let limited = model.max_depth != u32::MAX;
+            model.max_depth -= u32::from(limited);
+            limited
+        }
+        Mistake::Normals => normals(scene, model),
+        Mistake::LightChoice => light_choice(model),
+    }
+}
+
+/// A spectrum of the bank times a function of the wavelength in nm.
+fn scaled<T: Scalar>(model: &mut Model<T>, start: u32, factor: impl Fn(f64) -> f64) -> u32 {
+    let rows = CELLS / WAVELENGTHS;
+    let table = model.spectra.rows::<WAVELENGTHS>();
+    let values: Vec<f64> = (0..CELLS)
+        .map(|cell| {
+            let value = table[start as usize + cell % rows][cell / rows].to_f64();
+            value * factor(middle(cell))
+        })
+        .collect();
+    model.spectra.push(&values)
+}
+
+/// Middle of a cell of the wavelength grid, nm.
+fn middle(cell: usize) -> f64 {
+    (Cumulative.edge(cell) + Cumulative.edge(cell + 1)) / 2.0
+}
+
+/// The loop reads appearances by part.
+fn refresh<T: Scalar>(model: &mut Model<T>) {
+    model.parts = Parts::new(&model.shapes, &model.shading);
+}
+
+fn reflectance<T: Scalar>(model: &mut Model<T>) -> bool {
+    let diffuse = |s: &&etalon::integrate::model::ObjectShading<T>| s.scatter == Scatter::Diffuse;
+    let Some(material) = model.shading.iter().find(diffuse).map(|s| s.material) else {
+        return false;
+    };
+    for object in 0..model.shading.len() {
+        let shading = model.shading[object];
+        if shading.material == material && shading.scatter == Scatter::Diffuse {
+            model.shading[object].spectrum = scaled(model, shading.spectrum, |_| 1.005);
+        }
+    }
+    refresh(model);
+    true
+}
+
+/// The scene's only receiver lies in the plane y = 0, and `direction` has length 1.
+fn cosine<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
+    let mut found = false;
+    let [light] = scene.lights.as_slice() else {
+        return false;
+    };
+    let etalon::scene::Light::Directional { direction, .. } = light else {
+        return false;
+    };
+    for k in 0..model.lights.len() {
+        if matches!(model.lights[k].shape, LightShape::Directional(_)) {
+            let spectrum = model.lights[k].spectrum;
+            model.lights[k].spectrum = scaled(model, spectrum, |_| 1.0 / -direction.y);
+            found = true;
+        }
+    }
+    found
+}
+
+/// All rays meet the scene's metal at [`INCIDENCE`].
+fn polarisation<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
+    let cosine = INCIDENCE.to_radians().cos();
+    let mut found = false;
+    for object in 0..model.shading.len() {
+        let material = &scene.materials[model.shading[object].material as usize].value;
+        let Surface::Conductor(index) = &material.surface else {
+            continue;
+        };
+        let values: Vec<f64> = (0..CELLS)
+            .map(|cell| {
+                let (n, k) = index.n_k(middle(cell));
+                let mean = fresnel::conductor(cosine, n, k);
+                let s = perpendicular(cosine, n, k);
+                // s and p average to the mean; with s twice, (2 s + p)/3.
+                (2.0 * mean + s) / 3.0
+            })
+            .collect();
+        model.shading[object].spectrum = model.spectra.push(&values);
+        model.shading[object].scatter = Scatter::IdealMirror;
+        found = true;
+    }
+    if found {
+        model.needs.ideal_mirror = true;
+        refresh(model);
+    }
+    found
+}
+
+/// Reflectance of a metal for light polarised perpendicularly to the plane of incidence:
+/// |cos θ − √((n + ik)² − sin² θ)|²/|cos θ + √…|².
+fn perpendicular(cosine: f64, n: f64, k: f64) -> f64 {
+    let (re, im) = (n * n - k * k - (1.0 - cosine * cosine), 2.0 * n * k);
+    let size = re.hypot(im);
+    let (a, b) = (((size + re) / 2.0).sqrt(), ((size - re) / 2.0).sqrt());
+    ((cosine - a).powi(2) + b * b) / ((cosine + a).powi(2) + b * b)
+}
+
+/// Dividing by a density that is wrong multiplies every contribution by the ratio; each one is linear
+/// in an emission.
+fn wavelengths<T: Scalar>(model: &mut Model<T>) -> bool {
+    let factor = |nm: f64| {
+        let turns = (nm - SHORTEST) / (LONGEST - SHORTEST);
+        1.0 / (1.0 + DENSITY_ERROR * (2.0 * std::f64::consts::TAU * turns).sin())
+    };
+    if let Some(environment) = model.environment {
+        model.environment = Some(scaled(model, environment, factor));
+    }
+    for k in 0..model.lights.len() {
+        let spectrum = model.lights[k].spectrum;
+        model.lights[k].spectrum = scaled(model, spectrum, factor);
+    }
+    for object in 0..model.shading.len() {
+        if let Some(emission) = model.shading[object].emission {
+            model.shading[object].emission = Some(scaled(model, emission, factor));
+        }
+    }
+    model.small_lights = SmallLights::new(&model.lights).map(Box::new);
+    refresh(model);
+    true
+}
+
+fn lens<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
+    let mut camera = scene.camera;
+    if let Some(lens) = &mut camera.lens {
+        lens.radius *= 1.01;
+    }
+    model.camera = LaneCamera::new(&camera, scene.image.size);
+    camera.lens.is_some()
+}
+
+/// The normal of canonical z = 0 is the third row of the inverse, those of a cube's faces are all
+/// three, each divided by its length; here they are not.
+fn normals<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
+    let mut found = false;
+    let parts = &mut model.parts;
+    for (number, entry) in parts.entries.iter_mut().enumerate() {
+        let to_world = &scene.objects[entry.object as usize].value.to_world;
+        let rows = inverse_rows(&to_world.rows);
+        let first = parts.first[entry.object as usize] as usize;
+        let flat = parts
+            .first
+            .get(entry.object as usize + 1)
+            .is_none_or(|next| *next == first as u32 + 1);
+        let axis = if flat { 2 } else { number - first };
+        // Sizes are no shear: canonical coordinates are those of the shape of size 1.
+        let size = scene.objects[entry.object as usize].value.size.to_array()[axis];
+        let length = rows[axis].iter().map(|x| x * x).sum::<f64>().sqrt() * size.abs();
+        if (length - 1.0).abs() < 1e-12 {
+            continue;
+        }
+        found = true;
+        let longer = |x: T| T::from_f64(x.to_f64() * length);
+        entry.part.vector = entry.part.vector.map(longer);
+        entry.part.level = longer(entry.part.level);
+        entry.part.half = longer(entry.part.half);
+        if let Some(small) = &mut parts.small {
+            for (column, x) in small.vector.iter_mut().zip(entry.part.vector) {
+                column[number] = x;
+            }
+            small.level[number] = entry.part.level;
+            small.half[number] = entry.part.half;
+        }
+    }
+    found
+}
+
+/// Rows of the inverse's linear part.
+fn inverse_rows(rows: &[[f64; 4]; 3]) -> [[f64; 3]; 3] {
+    let row = |i: usize| glam::DVec3::new(rows[i][0], rows[i][1], rows[i][2]);
+    let matrix = glam::DMat3::from_cols(row(0), row(1), row(2)).transpose();
+    let inverse = matrix.inverse().transpose();
+    [inverse.x_axis, inverse.y_axis, inverse.z_axis].map(|v| v.to_array())
+}
+
+fn light_choice<T: Scalar>(model: &mut Model<T>) -> bool {
+    let count = model.lights.len();
+    if count < 2 {
+        return false;
+    }
+    for light in &mut model.lights {
+        light.probability = T::from_f64(1.0 / count as f64);
+    }
+    model.small_lights = SmallLights::new(&model.lights).map(Box::new);
+    true
+}
