@@ -14,7 +14,6 @@ import sys
 import time
 from pathlib import Path
 
-import mitsuba as mi
 import numpy as np
 
 import mitsuba_scene
@@ -56,7 +55,7 @@ def rows(reference, arguments):
     for sampler in arguments.samplers:
         for spp in arguments.spp:
             tables["image"]["spp"] = spp
-            scene = mi.load_dict(mitsuba_scene.Builder(tables, reference.path.parent).build(sampler, 0, film))
+            scene = mitsuba_scene.load_tables(tables, reference.path.parent, sampler, 0, film)
             taken = scene.sensors()[0].sampler().sample_count()
             mitsuba_scene.render(scene)
             for replicate in range(arguments.replicates):
