@@ -5,8 +5,8 @@ import subprocess
 import time
 from pathlib import Path
 
-import mitsuba as mi
 import numpy as np
+import OpenEXR
 
 import spectra
 
@@ -53,8 +53,6 @@ def children_seconds():
 
 def read_xyz(path):
     """Linear XYZ (height×width×3, float64) of a picture with channels R, G, B."""
-    bitmap = mi.Bitmap(str(path))
-    names = [field.name for field in bitmap.struct_()]
-    values = np.array(bitmap, np.float64)
-    rgb = values[..., [names.index(channel) for channel in "RGB"]]
+    channels = OpenEXR.File(str(path), separate_channels=True).channels()
+    rgb = np.stack([channels[name].pixels for name in "RGB"], axis=-1).astype(np.float64)
     return rgb @ np.linalg.inv(spectra.XYZ_TO_RGB).T

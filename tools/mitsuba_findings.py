@@ -168,7 +168,7 @@ def white_point():
     observer = picture({"sky": flat()}, spp=4096, sampler="multijitter", film=film)[..., 1].mean()
     observer /= mitsuba_scene.ETALON_Y_INTEGRAL
     ratio = mitsuba_scene.ETALON_Y_INTEGRAL / mitsuba_scene.MITSUBA_Y_INTEGRAL
-    return f"`hdrfilm` Y = {standard:.5f} ({ratio:.5f} expected of its constant), `specfilm` with the 1 nm table {observer:.5f}"
+    return f"`hdrfilm` {standard:.5f} ({ratio:.5f} follows from its constant), `specfilm`, 1 nm table {observer:.5f}"
 
 
 @finding
@@ -355,7 +355,12 @@ def threads_and_filters():
 def elsewhere(code, **environment):
     """Exit code and last line of a Python program of its own."""
     result = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=False, env=os.environ | environment
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | environment,
+        timeout=60,
     )
     lines = (result.stderr.strip() or result.stdout.strip()).splitlines()
     return result.returncode, lines[-1][:120] if lines else ""
@@ -372,6 +377,20 @@ def old_llvm():
         "print(mi.render(mi.load_dict(mi.cornell_box()), spp=1).shape)"
     )
     return "exit code {}: {}".format(*elsewhere(code, DRJIT_LIBLLVM_PATH=library))
+
+
+@finding
+def exr_with_one_thread():
+    """Writing an EXR by `Bitmap.write` with a pool of one thread."""
+    code = (
+        "import mitsuba as mi, numpy as np, drjit; mi.set_variant('llvm_ad_rgb'); drjit.set_thread_count(1); "
+        "import os, tempfile; name = os.path.join(tempfile.mkdtemp(), 'x.exr'); "
+        "mi.Bitmap(np.zeros((64, 64, 3), np.float32)).write(name); print('written')"
+    )
+    try:
+        return "exit code {}: {}".format(*elsewhere(code))
+    except subprocess.TimeoutExpired:
+        return "does not end within a minute"
 
 
 @finding

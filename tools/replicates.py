@@ -39,8 +39,7 @@ def pictures(reference, first_seed):
 def all_wavelengths(reference, tables, first_seed):
     """Pictures with four wavelengths a path."""
     film = mitsuba_scene.make_film(tables["image"]["size"], "observer", BANDS)
-    builder = mitsuba_scene.Builder(tables, reference.path.parent)
-    scene = mi.load_dict(builder.build(reference.sampler, 0, film))
+    scene = mitsuba_scene.load_tables(tables, reference.path.parent, reference.sampler, 0, film)
     widths = np.array([high - low for low, high in BANDS])
     for seed in range(first_seed, first_seed + reference.replicates):
         values = np.array(mi.render(scene, seed=seed), np.float64)
@@ -74,8 +73,7 @@ def at_wavelength(reference, tables, nm, seed):
     sensitivity = {"type": "regular", "wavelength_min": low, "wavelength_max": low + LINE, "values": "1,1,1,1,1"}
     film = mitsuba_scene.make_film(size, "standard") | {"type": "specfilm", "line": sensitivity}
     film.pop("pixel_format")
-    builder = mitsuba_scene.Builder(tables, reference.path.parent, nm)
-    scene = mi.load_dict(builder.build(reference.sampler, seed, film))
+    scene = mitsuba_scene.load_tables(tables, reference.path.parent, reference.sampler, seed, film, nm)
     return np.array(mi.render(scene, seed=seed), np.float64)[..., 0] / LINE
 
 
