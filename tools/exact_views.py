@@ -4,8 +4,8 @@
     tools/exact_views.py [--size 700] [--distances 1 10 100 1000] [--every 10] [--threads 2]
 
 Primary rays of the heart and of Mitchell's surface, hits by `cargo bench --bench implicit -- view`. For each
-pixel on a silhouette (a neighbour's answer differs), each pixel beside one, and one of `--every` pixels in
-both directions of the rest, the field along the ray is formed in rational numbers from the rays' own f64, and
+pixel on a silhouette (one of its eight neighbours' answers differs) and one of `--every` pixels in both
+directions of the rest, the field along the ray is formed in rational numbers from the rays' own f64, and
 its roots are isolated by FLINT (Johansson 2017, `python-flint`), which certifies them. Printed are the pixels
 that were checked, those whose mask or depth is wrong, and the largest error of a depth relative to the
 length of the box. Exit code 1 if anything is wrong. A depth is wrong beyond 1e-12 of that length.
@@ -88,11 +88,11 @@ def first_root(polynomial, stretch):
 
 def chosen(hits, every):
     """The pixels to check."""
-    mask = np.pad(hits, 2, mode="edge")
+    mask = np.pad(hits, 1, mode="edge")
     size = hits.shape[0]
     near = np.zeros_like(hits)
-    for i in range(5):
-        for j in range(5):
+    for i in range(3):
+        for j in range(3):
             near |= mask[i : i + size, j : j + size] != hits
     near[::every, ::every] = True
     return np.argwhere(near)

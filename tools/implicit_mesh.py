@@ -35,9 +35,7 @@ NAMED = {
     ),
 }
 FUNCTIONS = {
-    name: getattr(np, name)
-    for name in "sqrt abs exp log sin cos tan sinh cosh tanh atan2".split()
-    if hasattr(np, name)
+    name: getattr(np, name) for name in ("sqrt", "abs", "exp", "log", "sin", "cos", "tan", "sinh", "cosh", "tanh")
 } | {
     "asin": np.arcsin,
     "acos": np.arccos,
@@ -87,10 +85,12 @@ class Powers(ast.NodeTransformer):
     def visit_BinOp(self, node):
         """A sum, product or power."""
         self.generic_visit(node)
-        whole = isinstance(node.op, ast.Pow) and isinstance(node.right, ast.Constant) and isinstance(node.right.value, int)
-        if not whole:
+        exponent = node.right
+        if not (
+            isinstance(node.op, ast.Pow) and isinstance(exponent, ast.Constant) and isinstance(exponent.value, int)
+        ):
             return node
-        return ast.copy_location(ast.Call(ast.Name("power", ast.Load()), [node.left, node.right], []), node)
+        return ast.copy_location(ast.Call(ast.Name("power", ast.Load()), [node.left, exponent], []), node)
 
 
 def power(base, exponent):

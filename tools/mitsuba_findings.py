@@ -55,13 +55,13 @@ def flat(value=1.0):
 def rays():
     """Random rays through the ball of radius 3: origins and unit directions."""
     random = np.random.default_rng(1)
-    origins = mitsuba_directions(random) * 6
+    origins = unit_vectors(random) * 6
     targets = random.uniform(-1.2, 1.2, (RAYS, 3))
     directions = targets - origins
     return origins, directions / np.linalg.norm(directions, axis=1)[:, None]
 
 
-def mitsuba_directions(random):
+def unit_vectors(random):
     """Unit vectors, uniformly."""
     vectors = random.normal(size=(RAYS, 3))
     return vectors / np.linalg.norm(vectors, axis=1)[:, None]
@@ -80,7 +80,9 @@ def exact_hits(kind, matrix, origins, directions):
     inverse = np.linalg.inv(matrix)
     o, d = origins @ inverse[:3, :3].T + inverse[:3, 3], directions @ inverse[:3, :3].T
     with np.errstate(divide="ignore", invalid="ignore"):
-        margin = {"sphere": ball, "cube": slabs, "disk": flat_shape, "rectangle": flat_shape, "cylinder": tube}[kind](o, d, kind)
+        margin = {"sphere": ball, "cube": slabs, "disk": flat_shape, "rectangle": flat_shape, "cylinder": tube}[kind](
+            o, d, kind
+        )
     return margin > 0, np.abs(margin) > 1e-4
 
 
@@ -182,7 +184,9 @@ def observer_table():
         values = np.interp(fine, nm, [0, 1, 1, 0])
         true = [np.trapezoid(values * np.interp(fine, spectra.WHOLE_NM, bar), fine) for bar in spectra.observer()[0]]
         worst = np.maximum(worst, np.abs(own - true) / max(true))
-    return "20 nm wide lights: largest error of X, Y, Z over the largest of them " + ", ".join(f"{w:.1e}" for w in worst)
+    return "20 nm wide lights: largest error of X, Y, Z over the largest of them " + ", ".join(
+        f"{w:.1e}" for w in worst
+    )
 
 
 @finding
@@ -257,9 +261,7 @@ def samplers_between_seeds():
 
 def joined(scene, sampler, count, spp, first, options):
     """Mean Y of pictures with different seeds, and the variance of that mean."""
-    pictures = [
-        picture(scene, spp=spp, seed=first + seed, sampler=sampler, **options)[..., 1] for seed in range(count)
-    ]
+    pictures = [picture(scene, spp=spp, seed=first + seed, sampler=sampler, **options)[..., 1] for seed in range(count)]
     return np.mean(pictures, axis=0), np.var(pictures, axis=0, ddof=1) / count
 
 
@@ -280,7 +282,13 @@ def depth_convention():
     """Between walls of albedo and emission 0.5: 0.5, 0.75, 0.875 for 1, 2, 3 segments."""
     grey = {"type": "diffuse", "reflectance": {"type": "uniform", "value": 0.5}}
     light = {"type": "area", "radiance": {"type": "uniform", "value": 0.5}}
-    cube = {"type": "cube", "flip_normals": True, "bsdf": grey, "emitter": light, "to_world": transform(np.diag([10, 10, 10, 1.0]))}
+    cube = {
+        "type": "cube",
+        "flip_normals": True,
+        "bsdf": grey,
+        "emitter": light,
+        "to_world": transform(np.diag([10, 10, 10, 1.0])),
+    }
     factor = mitsuba_scene.MITSUBA_Y_INTEGRAL / mitsuba_scene.ETALON_Y_INTEGRAL
     values = [picture({"cube": cube}, spp=1024, depth=depth)[..., 1].mean() * factor for depth in (1, 2, 3)]
     return "max_depth 1, 2, 3: " + ", ".join(f"{value:.4f}" for value in values)

@@ -9,7 +9,7 @@ that an equal-energy spectrum of value 1 has Y = 1. Results here are multiplied 
 red or green paint; `--film observer` makes it use the published 1 nm table (and its wavelengths).
 
 What is not the same: dispersion (Mitsuba's glass has the index at 550 nm at every wavelength;
-reference.py goes one wavelength at a time), a plane ends a million camera distances away, without the pattern of a checkerboard beyond a thousand,
+reference.py goes one wavelength at a time), a plane is a square that ends 100 000 camera distances away,
 and an implicit surface is a fine mesh (implicit_mesh.py). A lens in parallel projection, checkerboards
 on anything but squares and cubes, emitting spheres that are ellipsoids and emitting implicit surfaces have no
 counterpart.
@@ -37,11 +37,8 @@ MITSUBA_VERSION = "3.9.1"
 DEFAULT_VARIANT = "llvm_ad_spectral"
 MITSUBA_Y_INTEGRAL = 106.7502594
 ETALON_Y_INTEGRAL = 106.856914916767
-# Half sizes, in camera distances, of the squares that stand for a plane: one with the plane's own material,
-# in whose texture coordinates single precision tells the cells of a checkerboard apart, and a ring around it
-# with the mean of the cells, so far out that the horizon is where it belongs.
-PLANE_EXTENT = 1e3
-HORIZON_EXTENT = 1e6
+# Half sizes, in camera distances, of the squares that make up a plane.
+PLANE_EXTENTS = [8, 1000, 100_000]
 # Distance between the two copies of a surface that emits on both sides, of its extent: a hundred
 # times the rounding of coordinates in single precision, so that rays tell the copies apart.
 SIDES_GAP = 1e-5
@@ -129,7 +126,7 @@ class Builder:
         camera = self.scene["camera"]
         up = camera.get("up", [0, 1, 0])
         place = mi.ScalarTransform4f().look_at(origin=camera["from"], target=camera["to"], up=up)
-        clip = {"near_clip": float(1e-3 * self.view), "far_clip": float(10 * HORIZON_EXTENT * self.view)}
+        clip = {"near_clip": float(1e-3 * self.view), "far_clip": float(1e7 * self.view)}
         lens = camera.get("lens", {"radius": 0})
         width, height = self.scene["image"]["size"]
         if "orthographic" in camera:
@@ -173,20 +170,14 @@ class Builder:
             if extra:
                 raise SceneError(f"{place.name}: a checkered cube that emits has no counterpart in Mitsuba")
             return self.checkered_cube(place, material, key)
+        if place.kind == "plane":
+            return self.plane(place, material, key, extra)
         bsdf = {"bsdf": self.bsdf(place, material)}
         if place.kind == "implicit":
             if extra:
                 raise SceneError(f"{place.name}: a mesh of an implicit surface that emits is no counterpart")
             return {key: implicit_shape(place, bsdf["bsdf"])}
         to_world = unmirrored(place.to_world)
-        if place.kind == "plane":
-            to_world = to_world @ np.diag([*plane_scale(to_world, self.view), 1, 1])
-            ring = {"bsdf": self.mean_bsdf(place, material)} | extra
-            far = {
-                f"{key}_far{side}": {"type": "rectangle", "to_world": transform(to_world @ local)} | ring
-                for side, local in enumerate(ring_sides(HORIZON_EXTENT / PLANE_EXTENT))
-            }
-            return far | {key: {"type": "rectangle", "to_world": transform(to_world)} | bsdf | extra}
         if place.kind == "sphere" and not is_similarity(to_world):
             if extra:
                 raise SceneError(f"{place.name}: Mitsuba cannot place an emitting sphere by a general transform")
@@ -221,6 +212,26 @@ class Builder:
             result |= self.shapes(rectangle, board, f"{key}_face{axis}{'-+'[side > 0]}", {})
         return result
 
+    def plane(self, place, material, key, extra):
+        """A square about the origin and rings of four rectangles around it, out to the last of
+        `PLANE_EXTENTS`: single precision resolves places on a rectangle to 6e-8 of its size only."""
+        unit = self.view / np.linalg.norm(place.to_world[:3, :2], axis=0)
+        result = {}
+        for part, corners in plane_parts(unit).items():
+            (x0, x1), (y0, y1) = corners
+            half = np.array([(x1 - x0) / 2, (y1 - y0) / 2, 1.0])
+            centre = np.array([(x0 + x1) / 2, (y0 + y1) / 2, 0.0])
+            local = scene_file.step({"translate": centre}) @ np.diag([*half, 1.0])
+            tile = replace(place, kind="rectangle", size=half, to_world=place.to_world @ local)
+            if "checkerboard" in material:
+                board = self.checkerboard(tile, material, centre)
+                bsdf = two_sided({"type": "diffuse", "reflectance": board})
+            else:
+                bsdf = self.bsdf(tile, material)
+            to_world = transform(unmirrored(tile.to_world))
+            result[key + part] = {"type": "rectangle", "to_world": to_world, "bsdf": bsdf} | extra
+        return result
+
     def bsdf(self, place, material):
         """The scattering of a material on a shape."""
         if "diffuse" in material:
@@ -235,13 +246,6 @@ class Builder:
             return two_sided({"type": "diffuse", "reflectance": self.checkerboard(place, material)})
         return two_sided({"type": "diffuse", "reflectance": spectrum(0.0)})
 
-    def mean_bsdf(self, place, material):
-        """The scattering of a material; of a checkerboard, the mean of its cells."""
-        if "checkerboard" not in material:
-            return self.bsdf(place, material)
-        cells = [two_sided({"type": "diffuse", "reflectance": self.reflectance(c)}) for c in material["checkerboard"]]
-        return {"type": "blendbsdf", "weight": 0.5, "even": cells[0], "odd": cells[1]}
-
     def conductor(self, mirror):
         """A smooth mirror: a metal of the project's own tables, n and k, or an ideal reflectance."""
         if isinstance(mirror, dict) and "ideal" in mirror:
@@ -252,18 +256,17 @@ class Builder:
         nm, n, k = spectra.read_csv(spectra.DATA / f"{mirror.lower()}.csv")
         return {"type": "conductor", "eta": spectrum((nm, n)), "k": spectrum((nm, k))}
 
-    def checkerboard(self, place, material):
-        """A texture over u, v of a rectangle: a Mitsuba tile is two cells by two."""
-        if place.kind not in ("rectangle", "plane"):
+    def checkerboard(self, place, material, centre=(0.0, 0.0)):
+        """A texture over u, v of a rectangle about `centre`, in object coordinates: a Mitsuba tile is
+        two cells by two."""
+        if place.kind != "rectangle":
             raise SceneError(f"{place.name}: Mitsuba has no checkerboard in object coordinates on a {place.kind}")
-        half = place.size[:2].copy()
-        if place.kind == "plane":
-            half *= plane_scale(place.to_world, self.view)
-        tiles = half / material["cell"]
+        tiles = place.size[:2] / material["cell"]
         to_uv = np.diag([*tiles, 1.0])
         to_uv[:2, 2] = -tiles / 2
         if np.linalg.det(place.to_world[:3, :3]) < 0:
             to_uv[0] *= -1
+        to_uv[:2, 2] += np.array(centre[:2]) / (2 * material["cell"])
         even, odd = (self.reflectance(form) for form in material["checkerboard"])
         return {"type": "checkerboard", "color0": even, "color1": odd, "to_uv": mi.ScalarTransform3f(to_uv)}
 
@@ -276,24 +279,30 @@ def two_sided(bsdf):
 def canonical_parts(kind):
     """Mitsuba's shapes, by suffix, that make up a canonical shape, each with its 4×4 placement."""
     if kind != "cylinder":
-        return {"": ("rectangle" if kind == "plane" else kind, np.eye(4))}
+        return {"": (kind, np.eye(4))}
     side = scene_file.step({"translate": [0, 0, -1]}) @ np.diag([1, 1, 2, 1])
     top = scene_file.step({"translate": [0, 0, 1]})
     bottom = scene_file.rotation([1, 0, 0], 180) @ top
     return {"_side": ("cylinder", side), "_top": ("disk", top), "_bottom": ("disk", bottom)}
 
 
-def ring_sides(size):
-    """Placements (4×4) of four rectangles around the canonical one, whose outline is `size` times as large."""
-    middle, half = (size + 1) / 2, (size - 1) / 2
-    for sign in (-1, 1):
-        yield scene_file.step({"translate": [sign * middle, 0, 0]}) @ np.diag([half, size, 1, 1])
-        yield scene_file.step({"translate": [0, sign * middle, 0]}) @ np.diag([1, half, 1, 1])
-
-
-def plane_scale(to_world, view):
-    """Canonical half sizes (2) of the square that stands for a plane: 1000 camera distances."""
-    return PLANE_EXTENT * view / np.linalg.norm(to_world[:3, :2], axis=0)
+def plane_parts(unit):
+    """Rectangles ((x from, to), (y from, to)) by suffix that make up a plane; `unit` (2) is the
+    camera's distance in canonical coordinates."""
+    parts, inner = {}, np.zeros(2)
+    for index, extent in enumerate(PLANE_EXTENTS):
+        (a, b), (x, y) = inner, extent * unit
+        if index == 0:
+            parts[""] = ((-x, x), (-y, y))
+        else:
+            parts |= {
+                f"_left{index}": ((-x, -a), (-y, y)),
+                f"_right{index}": ((a, x), (-y, y)),
+                f"_below{index}": ((-a, a), (-y, -b)),
+                f"_above{index}": ((-a, a), (b, y)),
+            }
+        inner = extent * unit
+    return parts
 
 
 def unmirrored(to_world):

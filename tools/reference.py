@@ -32,6 +32,7 @@ import mitsuba_scene
 import reference_agreement
 import reference_file
 import replicates
+import scene_file
 from reference_file import Reference
 from scene_file import SceneError
 
@@ -54,9 +55,7 @@ def first_seed(reference):
 def make(reference, path, arguments):
     """Renders a reference and writes it."""
     start = time.perf_counter()
-    mean, variance, whole, error = replicates.mean_and_variance(
-        replicates.pictures(reference, first_seed(reference))
-    )
+    mean, variance, whole, error = replicates.mean_and_variance(replicates.pictures(reference, first_seed(reference)))
     attributes = reference_file.scene_attributes(reference) | provenance(reference, arguments)
     names = reference_file.channel_names()
     attributes["channelMeans"] = json.dumps(dict(zip(names, whole.tolist(), strict=True)))
@@ -70,7 +69,7 @@ def make(reference, path, arguments):
 def provenance(reference, arguments):
     """How the picture was made."""
     tables = reference.tables()
-    attributes = settings() | {
+    attributes = settings(tables) | {
         "integrator": "path",
         "variant": mi.variant(),
         "maxDepth": tables["image"].get("max_depth", "unlimited"),
@@ -86,9 +85,12 @@ def provenance(reference, arguments):
     return attributes | ({"standIn": note} if note else {})
 
 
-def settings():
-    """What a picture must have been made with, whatever its scene."""
-    return {"mitsubaVersion": mi.__version__}
+def settings(tables):
+    """What a picture must have been made with besides what its entry in the list says."""
+    result = {"mitsubaVersion": mi.__version__}
+    if any(scene_file.placed(entry).kind == "plane" for entry in tables.get("object", [])):
+        result["planeExtent"] = mitsuba_scene.PLANE_EXTENTS[-1]
+    return result
 
 
 def real_spp(reference):
@@ -136,11 +138,16 @@ def chosen(arguments):
     return result
 
 
+def reason(reference):
+    """Why a reference must be rendered (again), or None."""
+    return reference_file.stale(reference, settings(reference.tables()))
+
+
 def check(references):
     """Says what is stale; the exit code."""
     code = 0
     for reference, _ in references:
-        why = reference_file.stale(reference, settings())
+        why = reason(reference)
         print(f"{reference.name}: {'stale, ' + why if why else 'up to date'}")
         code = code or int(why is not None)
     return code
@@ -167,9 +174,7 @@ def verify(reference):
 
 def parse_arguments():
     """The command line."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", help="names of references, or scene files (.toml)")
     mode = parser.add_mutually_exclusive_group()
     mode.add_argument("--list", action="store_true", help="list the references")
@@ -201,7 +206,7 @@ def main():
     warnings.simplefilter("once")
     references = chosen(arguments)
     if arguments.list:
-        for reference, path in references:
+        for reference, _ in references:
             print(f"{reference.name}: {reference.scene} {reference.panel or ''} {' '.join(reference.set)}")
         return 0
     if arguments.check:
@@ -216,7 +221,7 @@ def main():
             elif arguments.verify:
                 choose_variant(reference, arguments)
                 code = verify(reference) or code
-            elif arguments.force or path != reference.file or reference_file.stale(reference, settings()):
+            elif arguments.force or path != reference.file or reason(reference):
                 choose_variant(reference, arguments)
                 make(reference, path, arguments)
         except (SceneError, etalon.EtalonError, OSError) as error:

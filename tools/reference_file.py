@@ -56,7 +56,8 @@ def known():
 
 def channel_names(bands=BANDS):
     """Names of the channels of a mean: colour, then bands as etalon's src/film/spectral.rs."""
-    return ["R", "G", "B"] + [f"S0.{(low + high) / 2:.6f}nm".replace(".", ",").replace("S0,", "S0.") for low, high in bands]
+    middles = [f"{(low + high) / 2:.6f}".replace(".", ",") for low, high in bands]
+    return ["R", "G", "B", *(f"S0.{middle}nm" for middle in middles)]
 
 
 def scene_attributes(reference):

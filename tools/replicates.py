@@ -7,8 +7,6 @@ these are the middles of K equal parts of the stratum, in an order drawn for eac
 then a midpoint rule of STRATUM/K nm, and the spread of the replicates holds the spread within strata.
 """
 
-from pathlib import Path
-
 import mitsuba as mi
 import numpy as np
 

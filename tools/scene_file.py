@@ -20,7 +20,10 @@ RIVALS = [
     {"ideal", "k"},
     {"sphere", "cube", "cylinder", "disk", "rectangle", "plane", "implicit"},
 ]
-COMPANIONS = {"checkerboard": ["cell"], "implicit": ["inside", "parameters", "closed", "finder", "steps"]} | dict.fromkeys(RIVALS[2], ["scale"])
+COMPANIONS = {
+    "checkerboard": ["cell"],
+    "implicit": ["inside", "parameters", "closed", "finder", "steps"],
+} | dict.fromkeys(RIVALS[2], ["scale"])
 IMAGE_KEYS = {"size", "spp", "max_depth", "sampler", "replicates", "seed", "precision", "wavelengths"}
 
 
@@ -90,10 +93,7 @@ def lay(scene, override):
     *parents, last = path.split(".")
     table = scene
     for name in parents:
-        if isinstance(table, list):
-            table = table[int(name)]
-        else:
-            table = table.setdefault(name, {})
+        table = table[int(name)] if isinstance(table, list) else table.setdefault(name, {})
     if isinstance(table, list):
         table[int(last)] = value
     else:

@@ -32,11 +32,13 @@ use crate::spectrum::grid::{CELLS, Cumulative, SpectrumBank};
 use crate::spectrum::ior::RefractiveIndex;
 use crate::spectrum::observer::spectrum_to_xyz;
 
-/// Most objects that are tested one after the other; beyond, boxes are sorted into a hierarchy.
-/// Measured on clouds of one cross-section over a floor (AVX-512): a ball more in the list costs
-/// 2 to 3 ns a camera path, another shape 3.5, and a hierarchy of 25 objects as much as a list of
-/// about 30 balls or 40 other shapes.
-pub const LARGEST_LIST: usize = 32;
+/// What a list of objects may cost at most; beyond, boxes are sorted into a hierarchy. In the same
+/// unit, a ball costs 1 and another shape 5. Measured on clouds of one cross-section over a floor
+/// (AVX-512): a hierarchy takes as long as a list of about 85 balls, or of 20 objects of which two
+/// thirds are cubes and cylinders.
+pub const LARGEST_LIST: usize = 80;
+/// What a shape that is no ball costs in a list.
+const OTHER: usize = 5;
 
 /// Builds model and spectrometer.
 ///
@@ -71,7 +73,15 @@ pub fn build<T: Scalar>(
         occluders(scene, &lit, T::ROUNDOFF)
     };
     let parts = Parts::new(&builder.shapes, &builder.shading);
-    let many = builder.bounded.len() > LARGEST_LIST;
+    let list_costs: usize = builder
+        .bounded
+        .iter()
+        .map(|item| match builder.shapes[item.0 as usize].ball() {
+            Some(_) => 1,
+            None => OTHER,
+        })
+        .sum();
+    let many = list_costs > LARGEST_LIST;
     let model = Model {
         hierarchy: many.then(|| {
             Many::new(
@@ -287,6 +297,15 @@ impl<T: Scalar> Builder<T> {
         self.lights.push((light, power));
     }
 
+    /// About the area, over π, that parallel light falls on; planes alone have no size to tell.
+    fn lit_area(&self) -> f64 {
+        if self.reach > 0.0 {
+            self.reach * self.reach
+        } else {
+            1.0
+        }
+    }
+
     /// A light without a surface.
     fn free_light(&mut self, scene: &Scene, light: &Light) {
         let scalars = |v: DVec3| v.to_array().map(T::from_f64);
@@ -302,7 +321,7 @@ impl<T: Scalar> Builder<T> {
             } => (
                 LightShape::Directional(scalars(-*direction)),
                 irradiance,
-                std::f64::consts::PI * self.reach * self.reach * strength(irradiance),
+                std::f64::consts::PI * self.lit_area() * strength(irradiance),
             ),
         };
         if power > 0.0 {

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::faces;
 use crate::camera::pixel_size;
 use crate::math::affine::Affine;
 use crate::scene::{Object, Projection, Scene, Shape};
@@ -72,7 +73,7 @@ pub fn translation(to_world: &Affine) -> DVec3 {
 }
 
 /// Rounded rotations are off by a few 2⁻⁵³ an entry and composed from at most a few dozen.
-const ROUNDED: f64 = 1e-13;
+pub(super) const ROUNDED: f64 = 1e-13;
 
 /// Whether two vectors are perpendicular up to the rounding of composed rotations.
 pub fn perpendicular(a: DVec3, b: DVec3) -> bool {
@@ -97,7 +98,8 @@ pub fn is_right_circular(to_world: &Affine) -> bool {
 const LARGEST_PAIRWISE: usize = 512;
 
 /// Smallest positive gap between two objects: exact for balls beside or inside each other, between
-/// bounding boxes for the rest (0, which is contact or overlap, does not count).
+/// bounding boxes for the rest, and where these overlap between parallel faces and round walls (0, which
+/// is contact or overlap, does not count).
 pub fn smallest_gap(scene: &Scene) -> Option<f64> {
     if scene.objects.len() > LARGEST_PAIRWISE {
         return None;
@@ -111,7 +113,7 @@ pub fn smallest_gap(scene: &Scene) -> Option<f64> {
             Some((bounds, as_ball(&o.value, &to_world)))
         })
         .collect();
-    let mut smallest = f64::INFINITY;
+    let mut smallest = smallest_between_faces(scene);
     for (i, (bounds, ball)) in placed.iter().enumerate() {
         for (other_bounds, other_ball) in &placed[i + 1..] {
             let between = match (ball, other_ball) {
@@ -127,6 +129,33 @@ pub fn smallest_gap(scene: &Scene) -> Option<f64> {
         }
     }
     smallest.is_finite().then_some(smallest)
+}
+
+/// The same between faces and round walls of objects whose bounding boxes overlap; infinite planes are
+/// wherever other things are.
+fn smallest_between_faces(scene: &Scene) -> f64 {
+    let placed: Vec<_> = scene
+        .objects
+        .iter()
+        .map(|o| {
+            let to_world = about_camera(scene, &o.value);
+            (&o.value.shape, to_world, bounds(&o.value.shape, &to_world))
+        })
+        .collect();
+    let mut smallest = f64::INFINITY;
+    for (i, (shape, to_world, bounds)) in placed.iter().enumerate() {
+        for (other, other_to_world, other_bounds) in &placed[i + 1..] {
+            let apart = match (bounds, other_bounds) {
+                (Some(a), Some(b)) => gap(a, b) > 0.0,
+                _ => false,
+            };
+            if !apart {
+                let between = faces::gap((shape, to_world), (other, other_to_world));
+                smallest = smallest.min(between);
+            }
+        }
+    }
+    smallest
 }
 
 /// Bound on the error of a hit's position in arithmetic of unit roundoff `roundoff`, and the

@@ -7,6 +7,7 @@ pub mod build;
 pub mod choose;
 pub mod explain;
 pub mod extent;
+mod faces;
 pub mod needs;
 pub mod occluders;
 

@@ -1,7 +1,7 @@
 //! Comparisons: of pictures with pictures and with truths, and of methods with each other.
 //!
 //! A study ([`run`]) renders every point of a [`grid`] of choices several times with independent
-//! seeds, compares each render with a [`reference`], and keeps one [`row`] of each in a
+//! seeds, compares each render with a [`mod@reference`], and keeps one [`row`] of each in a
 //! [`journal`]; [`budget`] sees to it that this fits into the time there is.
 
 pub mod agreement;

@@ -29,8 +29,15 @@ const SLOPE: f64 = 1.2;
 /// Error over the wanted one from which a measurement is repeated, and the last round of all.
 const SHARP: f64 = 1.5;
 const LAST_ROUND: u64 = 5;
-/// Most samples a pixel to begin with.
+/// Most samples a pixel to begin with, at the usual sharpness.
 const MOST: f64 = 131_072.0;
+
+/// How many times smaller the errors are to be than usual: `ETALON_TRUTH_SHARPNESS`, for a run that
+/// takes its time (10 takes some hundred times as long).
+pub fn sharpness() -> f64 {
+    let asked = std::env::var("ETALON_TRUTH_SHARPNESS").ok();
+    asked.map_or(1.0, |text| text.parse().unwrap())
+}
 
 /// A number to be measured: (mean of a channel + offset) × factor.
 #[derive(Debug, Clone)]
@@ -184,13 +191,15 @@ fn measure_at(case: &Case, spp: u32, seed: u64) -> Measurement {
 /// favours no outcome. Where few samples see the light the pilots can be wrong about the error;
 /// what is still not sharp is thrown away as well and measured afresh with four times as many.
 pub fn measure(case: &Case, seed: u64) -> Measurement {
-    let goal = (case.wanted * case.truth).abs();
+    let goal = (case.wanted * case.truth).abs() / sharpness();
+    // Points are counted in 24 bits.
+    let most = (MOST * sharpness() * sharpness()).min(f64::from(1 << 23));
     let mut spp = PILOT;
     for pilot in 0..2 {
         let m = measure_at(case, spp, seed + pilot);
         let wanted = f64::from(spp) * (m.standard_error / goal).powf(2.0 / SLOPE);
         let last = pilot == 1 || wanted <= f64::from(16 * spp);
-        spp = (wanted.clamp(f64::from(PILOT), MOST) as u32).next_power_of_two();
+        spp = (wanted.clamp(f64::from(PILOT), most) as u32).next_power_of_two();
         if last {
             break;
         }
@@ -199,7 +208,7 @@ pub fn measure(case: &Case, seed: u64) -> Measurement {
     let mut round = 2;
     loop {
         let m = measure_at(case, spp, seed + round);
-        if m.standard_error <= SHARP * goal || round == LAST_ROUND {
+        if m.standard_error <= SHARP * goal || round == LAST_ROUND || spp > 1 << 22 {
             return m;
         }
         spp *= 4;

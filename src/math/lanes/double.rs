@@ -3,7 +3,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{f64x8, mask64x8, u64x8};
 
-use super::vector::{compares_once, fuses, mask, real, reversed_bytes};
+use super::vector::{compares_once, fuses, lanes, mask, real, reversed_bytes};
 use super::{Int, Lanes, Mask, Real};
 use crate::math::lookup::{self, SMALL};
 
@@ -71,42 +71,11 @@ impl<S: Simd> Lanes for Double<S> {
     type Mask = mask64x8<S>;
     const COUNT: usize = 8;
     const UNIFORM_BITS: u32 = 32;
+    lanes!(f64x8, mask64x8, f64, 8);
 
-    #[inline(always)]
-    fn narrow(self) -> Self {
-        self
-    }
-    #[inline(always)]
-    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
-        self.0.vectorize(f)
-    }
-    #[inline(always)]
-    fn real(self, x: f64) -> Self::Real {
-        f64x8::splat(self.0, x)
-    }
-    #[inline(always)]
-    fn splat(self, x: f64) -> Self::Real {
-        f64x8::splat(self.0, x)
-    }
     #[inline(always)]
     fn int(self, x: u32) -> Self::Int {
         u64x8::splat(self.0, x.into())
-    }
-    #[inline(always)]
-    fn mask(self, x: bool) -> Self::Mask {
-        mask64x8::splat(self.0, x)
-    }
-    #[inline(always)]
-    fn mask_from_bits(self, bits: u32) -> Self::Mask {
-        mask64x8::from_bitmask(self.0, bits.into())
-    }
-    #[inline(always)]
-    fn load(self, from: &[f64]) -> Self::Real {
-        f64x8::from_slice(self.0, &from[..8])
-    }
-    #[inline(always)]
-    fn store(self, x: Self::Real, to: &mut [f64]) {
-        x.store_slice(&mut to[..8]);
     }
     #[inline(always)]
     fn load_int(self, from: &[u32]) -> Self::Int {
@@ -137,30 +106,13 @@ impl<S: Simd> Lanes for Double<S> {
         u64x8::simd_from(self.0, out)
     }
     #[inline(always)]
-    fn lane(self, x: Self::Real, i: usize) -> f64 {
-        x[i & 7]
-    }
-    #[inline(always)]
     fn int_lane(self, x: Self::Int, i: usize) -> u32 {
         x[i & 7] as u32
-    }
-    #[inline(always)]
-    fn with_lane(self, mut x: Self::Real, i: usize, value: f64) -> Self::Real {
-        x[i & 7] = value;
-        x
     }
     #[inline(always)]
     fn with_int_lane(self, mut x: Self::Int, i: usize, value: u32) -> Self::Int {
         x[i & 7] = value.into();
         x
-    }
-    #[inline(always)]
-    fn select(self, m: Self::Mask, a: Self::Real, b: Self::Real) -> Self::Real {
-        m.select(a, b)
-    }
-    #[inline(always)]
-    fn select_int(self, m: Self::Mask, a: Self::Int, b: Self::Int) -> Self::Int {
-        m.select(a, b)
     }
     #[inline(always)]
     fn truncate(self, x: Self::Real) -> Self::Int {
@@ -188,13 +140,5 @@ impl<S: Simd> Lanes for Double<S> {
         // The sum's low bits are the biased exponent; the shift leaves nothing else.
         let biased: u64x8<S> = (e + self.real(4_503_599_627_370_496.0 + 1023.0)).bitcast();
         (biased << 52).bitcast()
-    }
-    #[inline(always)]
-    fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [Self::Scalar]) {
-        self.store(x.compress(keep), to);
-    }
-    #[inline(always)]
-    fn compress_int_into(self, x: Self::Int, keep: Self::Mask, to: &mut [u32]) {
-        self.store_int(x.compress(keep), to);
     }
 }

@@ -3,7 +3,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x16, i32x16, mask32x16, u32x16};
 
-use super::vector::{compares_once, fuses, mask, real, reversed_bytes};
+use super::vector::{compares_once, fuses, lanes, mask, real, reversed_bytes};
 use super::{Int, Lanes, Mask, Real};
 use crate::math::lookup::{self, SMALL};
 
@@ -65,42 +65,11 @@ impl<S: Simd> Lanes for Single<S> {
     type Mask = mask32x16<S>;
     const COUNT: usize = 16;
     const UNIFORM_BITS: u32 = 24;
+    lanes!(f32x16, mask32x16, f32, 16);
 
-    #[inline(always)]
-    fn narrow(self) -> Self {
-        self
-    }
-    #[inline(always)]
-    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
-        self.0.vectorize(f)
-    }
-    #[inline(always)]
-    fn real(self, x: f64) -> Self::Real {
-        f32x16::splat(self.0, x as f32)
-    }
-    #[inline(always)]
-    fn splat(self, x: f32) -> Self::Real {
-        f32x16::splat(self.0, x)
-    }
     #[inline(always)]
     fn int(self, x: u32) -> Self::Int {
         u32x16::splat(self.0, x)
-    }
-    #[inline(always)]
-    fn mask(self, x: bool) -> Self::Mask {
-        mask32x16::splat(self.0, x)
-    }
-    #[inline(always)]
-    fn mask_from_bits(self, bits: u32) -> Self::Mask {
-        mask32x16::from_bitmask(self.0, bits.into())
-    }
-    #[inline(always)]
-    fn load(self, from: &[f32]) -> Self::Real {
-        f32x16::from_slice(self.0, &from[..16])
-    }
-    #[inline(always)]
-    fn store(self, x: Self::Real, to: &mut [f32]) {
-        x.store_slice(&mut to[..16]);
     }
     #[inline(always)]
     fn load_int(self, from: &[u32]) -> Self::Int {
@@ -120,30 +89,13 @@ impl<S: Simd> Lanes for Single<S> {
         lookup::single(self.0, u32x16::from_slice(self.0, table), index)
     }
     #[inline(always)]
-    fn lane(self, x: Self::Real, i: usize) -> f32 {
-        x[i & 15]
-    }
-    #[inline(always)]
     fn int_lane(self, x: Self::Int, i: usize) -> u32 {
         x[i & 15]
-    }
-    #[inline(always)]
-    fn with_lane(self, mut x: Self::Real, i: usize, value: f32) -> Self::Real {
-        x[i & 15] = value;
-        x
     }
     #[inline(always)]
     fn with_int_lane(self, mut x: Self::Int, i: usize, value: u32) -> Self::Int {
         x[i & 15] = value;
         x
-    }
-    #[inline(always)]
-    fn select(self, m: Self::Mask, a: Self::Real, b: Self::Real) -> Self::Real {
-        m.select(a, b)
-    }
-    #[inline(always)]
-    fn select_int(self, m: Self::Mask, a: Self::Int, b: Self::Int) -> Self::Int {
-        m.select(a, b)
     }
     #[inline(always)]
     fn truncate(self, x: Self::Real) -> Self::Int {
@@ -165,13 +117,5 @@ impl<S: Simd> Lanes for Single<S> {
     #[inline(always)]
     fn power_of_two(self, e: Self::Real) -> Self::Real {
         (self.truncate(e + self.real(127.0)) << 23).bitcast()
-    }
-    #[inline(always)]
-    fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [Self::Scalar]) {
-        self.store(x.compress(keep), to);
-    }
-    #[inline(always)]
-    fn compress_int_into(self, x: Self::Int, keep: Self::Mask, to: &mut [u32]) {
-        self.store_int(x.compress(keep), to);
     }
 }

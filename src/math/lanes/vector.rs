@@ -109,7 +109,70 @@ macro_rules! real {
     };
 }
 
-pub(super) use {mask, real};
+/// The methods of [`super::Lanes`] that are alike.
+macro_rules! lanes {
+    ($real:ident, $mask:ident, $scalar:ty, $count:literal) => {
+        #[inline(always)]
+        fn narrow(self) -> Self {
+            self
+        }
+        #[inline(always)]
+        fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
+            self.0.vectorize(f)
+        }
+        #[inline(always)]
+        fn real(self, x: f64) -> Self::Real {
+            $real::splat(self.0, x as $scalar)
+        }
+        #[inline(always)]
+        fn splat(self, x: $scalar) -> Self::Real {
+            $real::splat(self.0, x)
+        }
+        #[inline(always)]
+        fn mask(self, x: bool) -> Self::Mask {
+            $mask::splat(self.0, x)
+        }
+        #[inline(always)]
+        fn mask_from_bits(self, bits: u32) -> Self::Mask {
+            $mask::from_bitmask(self.0, bits.into())
+        }
+        #[inline(always)]
+        fn load(self, from: &[$scalar]) -> Self::Real {
+            $real::from_slice(self.0, &from[..$count])
+        }
+        #[inline(always)]
+        fn store(self, x: Self::Real, to: &mut [$scalar]) {
+            x.store_slice(&mut to[..$count]);
+        }
+        #[inline(always)]
+        fn lane(self, x: Self::Real, i: usize) -> $scalar {
+            x[i & ($count - 1)]
+        }
+        #[inline(always)]
+        fn with_lane(self, mut x: Self::Real, i: usize, value: $scalar) -> Self::Real {
+            x[i & ($count - 1)] = value;
+            x
+        }
+        #[inline(always)]
+        fn select(self, m: Self::Mask, a: Self::Real, b: Self::Real) -> Self::Real {
+            m.select(a, b)
+        }
+        #[inline(always)]
+        fn select_int(self, m: Self::Mask, a: Self::Int, b: Self::Int) -> Self::Int {
+            m.select(a, b)
+        }
+        #[inline(always)]
+        fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [$scalar]) {
+            self.store(x.compress(keep), to);
+        }
+        #[inline(always)]
+        fn compress_int_into(self, x: Self::Int, keep: Self::Mask, to: &mut [u32]) {
+            self.store_int(x.compress(keep), to);
+        }
+    };
+}
+
+pub(super) use {lanes, mask, real};
 
 /// Reverses the order of the bits in each byte, and of the bytes as `order` says in each 16.
 #[inline(always)]

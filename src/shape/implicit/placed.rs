@@ -207,6 +207,24 @@ impl PlacedImplicit {
         workspace: &mut Workspace,
         tally: &mut ImplicitTally,
     ) -> ImplicitAnswer {
+        match self.first_crossing(query, workspace, tally) {
+            ImplicitAnswer::Found(hit) if hit.tier.is_some() => {
+                ImplicitAnswer::Found(ImplicitHit {
+                    normal: self.normal(&query.ray, hit.t, hit.enclosure),
+                    ..hit
+                })
+            }
+            answer => answer,
+        }
+    }
+
+    /// The same without the normal, which takes longer than all else where it has to be exact.
+    pub fn first_crossing(
+        &self,
+        query: &Query,
+        workspace: &mut Workspace,
+        tally: &mut ImplicitTally,
+    ) -> ImplicitAnswer {
         if !query.ray.is_valid() {
             return ImplicitAnswer::Absent;
         }
@@ -237,7 +255,7 @@ impl PlacedImplicit {
             ImplicitAnswer::Found(ImplicitHit {
                 t,
                 point: self.stepping.point_at(&query.ray, t),
-                normal: self.normal(&query.ray, t, enclosure),
+                normal: None,
                 enclosure,
                 multiplicity: (multiplicity > 0).then_some(multiplicity),
                 tier: Some(answers.tiers[0]),

@@ -87,7 +87,7 @@ impl<T: Scalar> Balls<T> {
     /// The places of balls that each lane's ray may meet before `limit`, place i as bit i: not those
     /// that it surely passes, leaves behind or does not reach, nor those of the objects `left_out`.
     ///
-    /// As [`Foot::is_apart`], in fewer operations and less sharply: with g = (o − c) · d, the foot is at
+    /// As `Foot::is_apart`, in fewer operations and less sharply: with g = (o − c) · d, the foot is at
     /// −g/|d|² and its squared distance from the centre |o|² − 2 o · c + |c|² − g²/|d|².
     #[inline(always)]
     pub fn near<L: Lanes<Scalar = T>, const N: usize>(

@@ -44,10 +44,12 @@ fn precision(precision: Precision) -> &'static str {
     }
 }
 
-const SIZE: (u32, u32) = (1500, 1500);
-/// Height of legend and column titles together.
-const LEGEND: u32 = 60;
-const TITLE: i32 = 24;
+const SIZE: (u32, u32) = (1500, 1420);
+/// Height of legend and column titles together, and width of the rows' names.
+const HEADER: u32 = 112;
+const NAMES: u32 = 104;
+const FONT: (&str, i32) = ("sans-serif", 20);
+const SMALL: (&str, i32) = ("sans-serif", 16);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Outcome = Result<(), ChartError>;
@@ -61,12 +63,24 @@ pub fn svg(points: &[Point]) -> Result<String, ChartError> {
     {
         let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
         root.fill(&WHITE).map_err(failed)?;
-        let (top, panels) = root.split_vertically(LEGEND);
+        let (top, below) = root.split_vertically(HEADER);
         legend(&top)?;
-        let panels = panels.split_evenly((SUBJECTS.len(), FAMILIES.len() + 1));
+        let (names, panels) = below.split_horizontally(NAMES);
+        let columns = FAMILIES.len() + 1;
+        let titles = FAMILIES.map(Family::axis).into_iter().chain(["ns a ray"]);
+        for (i, title) in titles.enumerate() {
+            let width = (SIZE.0 - NAMES) as usize / columns;
+            let place = ((NAMES as usize + i * width + 14) as i32, HEADER as i32 - 26);
+            top.draw(&Text::new(title, place, FONT)).map_err(failed)?;
+        }
+        let names = names.split_evenly((SUBJECTS.len(), 1));
+        let panels = panels.split_evenly((SUBJECTS.len(), columns));
         for (row, subject) in SUBJECTS.into_iter().enumerate() {
             let own: Vec<&Point> = points.iter().filter(|p| p.subject == subject).collect();
-            let cells = &panels[row * (FAMILIES.len() + 1)..];
+            let cells = &panels[row * columns..];
+            names[row]
+                .draw(&Text::new(subject.name(), (8, 50), FONT))
+                .map_err(failed)?;
             for (family, cell) in FAMILIES.into_iter().zip(cells) {
                 let of_family = own.iter().filter(|p| p.family == family);
                 shares(
@@ -88,13 +102,9 @@ fn shares(area: &Area, subject: Subject, family: Family, points: &[&Point]) -> O
     let exponents = family.exponents();
     let last = exponents.len() as f64 - 1.0;
     let mut chart = ChartBuilder::on(area)
-        .caption(
-            format!("{}: {}", subject.name(), family.axis()),
-            ("sans-serif", 12),
-        )
         .margin(4)
-        .x_label_area_size(20)
-        .y_label_area_size(34)
+        .x_label_area_size(24)
+        .y_label_area_size(46)
         .build_cartesian_2d(-0.3..last + 0.3, -0.05f64..1.05)
         .map_err(failed)?;
     chart
@@ -114,7 +124,7 @@ fn shares(area: &Area, subject: Subject, family: Family, points: &[&Point]) -> O
             }
         })
         .y_label_formatter(&|y| format!("{:.0} %", 100.0 * y))
-        .label_style(("sans-serif", 10))
+        .label_style(SMALL)
         .draw()
         .map_err(failed)?;
     for method in subject.methods() {
@@ -168,9 +178,8 @@ fn times(area: &Area, subject: Subject, points: &[&Point]) -> Outcome {
     let methods = subject.methods();
     let rows = methods.len() as f64;
     let mut chart = ChartBuilder::on(area)
-        .caption(format!("{}: ns a ray", subject.name()), ("sans-serif", 12))
         .margin(4)
-        .x_label_area_size(20)
+        .x_label_area_size(24)
         .y_label_area_size(10)
         .build_cartesian_2d((5f64..2e6).log_scale(), 0.0..rows)
         .map_err(failed)?;
@@ -181,7 +190,7 @@ fn times(area: &Area, subject: Subject, points: &[&Point]) -> Outcome {
         .y_labels(0)
         .x_labels(6)
         .x_label_formatter(&|x| format!("1e{:.0}", x.log10()))
-        .label_style(("sans-serif", 10))
+        .label_style(SMALL)
         .draw()
         .map_err(failed)?;
     for (i, method) in methods.iter().enumerate() {
@@ -234,16 +243,15 @@ fn legend(area: &Area) -> Outcome {
     for (text, method) in entries {
         let shade = colour(method);
         area.draw(&PathElement::new(
-            vec![(x, 16), (x + 24, 16)],
-            shade.stroke_width(3),
+            vec![(x, 18), (x + 24, 18)],
+            shade.stroke_width(4),
         ))
         .map_err(failed)?;
-        area.draw(&Text::new(text, (x + 30, 9), ("sans-serif", 15)))
+        area.draw(&Text::new(text, (x + 30, 8), FONT))
             .map_err(failed)?;
-        x += 60 + 8 * text.len() as i32;
+        x += 54 + 10 * text.len() as i32;
     }
-    let note = "share of rays, harder to the right: solid wrong, dashed undecided. Times: least, median (dot) \
-                and most over all points of a row";
-    area.draw(&Text::new(note, (20, 9 + TITLE), ("sans-serif", 15)))
-        .map_err(failed)
+    let note = "share of rays, harder to the right: solid wrong, dashed undecided; times: least, median (dot) \
+                and most of a row's points";
+    area.draw(&Text::new(note, (20, 38), FONT)).map_err(failed)
 }

@@ -54,10 +54,10 @@ impl Family {
     /// What its number is, for an axis.
     pub fn axis(self) -> &'static str {
         match self {
-            Self::Graze => "offset from the silhouette",
+            Self::Graze => "offset from silhouette",
             Self::Distance => "distance / size",
             Self::Condition => "condition number",
-            Self::Gap => "gap between two sheets",
+            Self::Gap => "gap between sheets",
             Self::Aspect => "aspect ratio",
         }
     }
@@ -102,8 +102,8 @@ pub struct Problem {
     pub cases: Vec<Case>,
     /// Size of an object in the world, for what counts as the same hit.
     pub size: f64,
-    /// Where a camera would stand that sees the object from where the rays come.
-    pub eye: f64,
+    /// Where a camera would stand that sees the object from as far as the rays come.
+    pub camera: DVec3,
 }
 
 /// A surface by itself, in its own box.
@@ -222,15 +222,16 @@ impl Problem {
         };
         let bodies = bodies(subject, &to_world, gap, model.as_ref())?;
         let half = model.as_ref().map_or(1.0, |model| model.half);
+        let far = if family == Family::Distance {
+            difficulty
+        } else {
+            4.0
+        };
         let mut problem = Self {
             bodies,
             cases: Vec::new(),
             size: 2.0 * half,
-            eye: if family == Family::Distance {
-                difficulty * half
-            } else {
-                4.0 * half
-            },
+            camera: DVec3::Z * (far * half + 2.0 * half),
         };
         for _ in 0..rays {
             let [o, d] = problem.line(subject, family, difficulty, model.as_ref(), &mut random);

@@ -2,9 +2,13 @@
 //! one number, against exact verdicts.
 //!
 //! Each arithmetic is asked about the ray as it can hold it, and judged by the exact answer to that ray:
-//! what rounding a ray does is not the method's fault. An answer is wrong if it is a miss for a hit or the
+//! what rounding does to a ray is not the method's fault. An answer is wrong if it is a miss for a hit or the
 //! other way round, on another object, or off by more than half the way to the next crossing or a
 //! thousandth of the object's size; but not for less than its arithmetic can hold of t.
+//!
+//! What the plan takes is judged by what a path would make of it, too: its hit, rounded to coordinates
+//! about the camera in the planned precision, must lie nearer to where it belongs than to the next
+//! object, with no allowance for a coarse arithmetic.
 
 pub mod chart;
 pub mod families;
@@ -14,6 +18,8 @@ pub mod truth;
 
 use std::fmt::Write as _;
 use std::time::Instant;
+
+use glam::DVec3;
 
 use super::finders::{Contestant, Precision, Ready, Score};
 use crate::math::affine::Affine;
@@ -108,6 +114,10 @@ const IMPLICIT: [Method; 6] = [
     Method::Proved(FinderChoice::Auto),
 ];
 
+/// Rays that are timed together, and how often: the best time counts, so that what else the machine does
+/// hardly shows.
+const BLOCK: usize = 10;
+const RUNS: usize = 3;
 /// Steps of the finder that proves nothing.
 const STEPS: u32 = 256;
 
@@ -277,34 +287,38 @@ enum Said {
 }
 
 fn score(method: Method, problem: &Problem, judged: &Judged, precision: Precision) -> Score {
-    let Some(mut finder) = Asked::new(method, problem, precision) else {
+    let Some(mut finder) = Asked::new(method, problem) else {
         return Score::default();
     };
-    let start = Instant::now();
-    let said: Vec<Said> = judged
-        .rays
-        .iter()
-        .map(|(ray, _)| finder.first_hit(ray))
-        .collect();
     let mut score = Score {
         rays: judged.rays.len() as u32,
-        nanoseconds: start.elapsed().as_nanos() as f64,
         ..Score::default()
     };
+    let mut said = Vec::with_capacity(judged.rays.len());
+    for block in judged.rays.chunks(BLOCK) {
+        let mut best = f64::INFINITY;
+        let mut answers = Vec::new();
+        for _ in 0..RUNS {
+            let start = Instant::now();
+            answers = block.iter().map(|(ray, _)| finder.first_hit(ray)).collect();
+            best = best.min(start.elapsed().as_nanos() as f64);
+        }
+        score.nanoseconds += best;
+        said.extend(answers);
+    }
     for ((ray, first), said) in judged.rays.iter().zip(said) {
-        // Eight roundings of t are what any arithmetic may lose at its end.
-        let finest = 8.0 * judged.roundoff;
+        score.undecided += u32::from(said == Said::Undecided);
         let right = match (said, first) {
-            (Said::Undecided, _) => {
-                score.undecided += 1;
-                true
+            (Said::Undecided, _) | (Said::Miss, None) => true,
+            (Said::Hit { t, body }, Some(first)) if method == Method::Ladder => {
+                let place = problem.placed(ray, t, precision);
+                body == first.body && problem.is_kept_apart(ray, first, place)
             }
-            (Said::Miss, None) => true,
             (Said::Hit { t, body }, Some(first)) => {
-                let within = (0.5 * first.gap).min(1e-3 * problem.size / ray.direction.length());
-                let off = (t - first.t).abs();
-                let near = finest * first.t.abs().max(t.abs());
-                (body == first.body || first.gap <= near) && off <= within.max(near)
+                // Eight roundings of t are what any arithmetic may lose at its end.
+                let near = 8.0 * judged.roundoff * first.t.abs().max(t.abs());
+                let within = (0.5 * first.gap).min(problem.same(ray));
+                (body == first.body || first.gap <= near) && (t - first.t).abs() <= within.max(near)
             }
             _ => false,
         };
@@ -313,17 +327,42 @@ fn score(method: Method, problem: &Problem, judged: &Judged, precision: Precisio
     score
 }
 
+impl Problem {
+    /// How far apart on a ray two answers may be that count as the same.
+    fn same(&self, ray: &Ray) -> f64 {
+        1e-3 * self.size / ray.direction.length()
+    }
+
+    /// Where a path of this precision would put a hit.
+    fn placed(&self, ray: &Ray, t: f64, precision: Precision) -> DVec3 {
+        let point = ray.origin + ray.direction * t - self.camera;
+        match precision {
+            Precision::Single => point.as_vec3().as_dvec3(),
+            Precision::Double => point,
+        }
+    }
+
+    /// Whether such a hit is nearer to where it belongs than to another body.
+    fn is_kept_apart(&self, ray: &Ray, first: &First, place: DVec3) -> bool {
+        let truth = self.placed(ray, first.t, Precision::Double);
+        let within = (0.5 * first.other).min(self.same(ray)) * ray.direction.length();
+        // What f64 itself does to coordinates of this size.
+        let noise = 8.0 * f64::ROUNDOFF * (ray.origin.length() + self.camera.length());
+        (place - truth).length() <= within + noise
+    }
+}
+
 /// A method made ready for a problem.
 enum Asked {
     Single(Vec<Textbook<f32>>),
     Double(Vec<Textbook<f64>>),
-    Ladder(Vec<Placed>, Precision),
+    Ladder(Vec<Placed>),
     Stepping(Ready, Affine, Precision),
     Proved(Box<PlacedImplicit>, Workspace),
 }
 
 impl Asked {
-    fn new(method: Method, problem: &Problem, precision: Precision) -> Option<Self> {
+    fn new(method: Method, problem: &Problem) -> Option<Self> {
         let bodies = &problem.bodies;
         let body: &Body = bodies.first()?;
         Some(match method {
@@ -333,7 +372,7 @@ impl Asked {
                 let placed = bodies
                     .iter()
                     .map(|b| Placed::new(b.kind?, &b.to_world).ok());
-                Self::Ladder(placed.collect::<Option<_>>()?, precision)
+                Self::Ladder(placed.collect::<Option<_>>()?)
             }
             Method::SignChange(precision) => {
                 let implicit = body.implicit.as_ref()?;
@@ -353,19 +392,13 @@ impl Asked {
         match self {
             Self::Single(all) => nearest(all.iter().map(|one| one.first_hit(ray))),
             Self::Double(all) => nearest(all.iter().map(|one| one.first_hit(ray))),
-            Self::Ladder(all, precision) => {
+            Self::Ladder(all) => {
                 let mut tally = Tally::default();
                 let hits = all.iter().map(|placed| {
                     let hit = placed.first_hit(ray, 0.0, Start::Free, &mut tally)?;
                     Some(hit.t)
                 });
-                match (nearest(hits), precision) {
-                    (Said::Hit { t, body }, Precision::Single) => Said::Hit {
-                        t: f64::from(t as f32),
-                        body,
-                    },
-                    (said, _) => said,
-                }
+                nearest(hits)
             }
             Self::Stepping(ready, inverse, precision) => {
                 let local = match precision {
@@ -384,7 +417,7 @@ impl Asked {
                     t_min: 0.0,
                     t_max: f64::INFINITY,
                 };
-                match placed.first_hit(&query, workspace, &mut ImplicitTally::default()) {
+                match placed.first_crossing(&query, workspace, &mut ImplicitTally::default()) {
                     ImplicitAnswer::Found(hit) => Said::Hit { t: hit.t, body: 0 },
                     ImplicitAnswer::Absent => Said::Miss,
                     ImplicitAnswer::Undecided => Said::Undecided,

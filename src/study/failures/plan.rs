@@ -17,7 +17,7 @@ pub fn precision(subject: Subject, problem: &Problem) -> Precision {
     let text = format!(
         "[camera]\nfrom = [0, 0, {:?}]\nto = [0, 0, 0]\northographic = {:?}\n\
          [image]\nsize = [{PIXELS}, {PIXELS}]\nspp = 1\n[materials]\ngrey = {{ diffuse = 0.5 }}\n{}",
-        problem.eye + problem.size,
+        problem.camera.z,
         1.5 * problem.size,
         object.repeat(problem.bodies.len())
     );

@@ -22,6 +22,8 @@ pub struct First {
     pub body: usize,
     /// From it to the next crossing of any body; infinite where there is none.
     pub gap: f64,
+    /// From it to the next crossing of another body.
+    pub other: f64,
 }
 
 /// The first hit with t ≥ 0; `None` where there is none.
@@ -37,13 +39,14 @@ pub fn first(subject: Subject, bodies: &[Body], case: &Case) -> Option<First> {
     all.retain(|(t, _)| t.sign() != Some(Ordering::Less));
     all.sort_by(|(a, _), (b, _)| order(a, b));
     let (t, body) = all.first()?;
-    let gap = all
-        .get(1)
-        .map_or(f64::INFINITY, |(next, _)| next.minus(t).to_f64());
+    let after = |crossing: Option<&(Exact, usize)>| {
+        crossing.map_or(f64::INFINITY, |(next, _)| next.minus(t).to_f64())
+    };
     Some(First {
         t: t.to_f64(),
         body: *body,
-        gap,
+        gap: after(all.get(1)),
+        other: after(all.iter().find(|(_, other)| other != body)),
     })
 }
 

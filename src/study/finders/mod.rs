@@ -156,7 +156,7 @@ impl Ready {
                     t_min,
                     t_max: f64::INFINITY,
                 };
-                match placed.first_hit(&query, workspace, &mut ImplicitTally::default()) {
+                match placed.first_crossing(&query, workspace, &mut ImplicitTally::default()) {
                     ImplicitAnswer::Found(hit) => Answer::Hit(hit.t),
                     ImplicitAnswer::Absent => Answer::Miss,
                     ImplicitAnswer::Undecided => Answer::Undecided,

@@ -1,0 +1,81 @@
+//! Gaps between objects that bounding boxes do not show: parallel faces, and round walls about one
+//! axis or centre.
+
+use glam::{DMat3, DVec3};
+
+use super::extent::ROUNDED;
+use crate::math::affine::Affine;
+use crate::scene::Shape;
+
+/// A shape's parallel planes, as (canonical axis, places on it).
+fn faces(shape: &Shape) -> &'static [(usize, &'static [f64])] {
+    const ENDS: &[f64] = &[-1.0, 1.0];
+    match shape {
+        Shape::Cube => &[(0, ENDS), (1, ENDS), (2, ENDS)],
+        Shape::Cylinder => &[(2, ENDS)],
+        Shape::Disk | Shape::Rectangle | Shape::Plane => &[(2, &[0.0])],
+        Shape::Sphere | Shape::Implicit(_) => &[],
+    }
+}
+
+/// How many of its coordinates a shape's round wall is about.
+fn round(shape: &Shape) -> Option<usize> {
+    match shape {
+        Shape::Sphere => Some(3),
+        Shape::Cylinder => Some(2),
+        _ => None,
+    }
+}
+
+fn linear(map: &Affine) -> DMat3 {
+    let row = |i: usize| DVec3::from_slice(&map.rows[i][..3]);
+    DMat3::from_cols(row(0), row(1), row(2)).transpose()
+}
+
+/// The smallest positive distance between two parallel faces, or two round walls of one kind that share
+/// their axis or centre; infinite where there are none. Faces count wherever they lie in their planes.
+pub fn gap(a: (&Shape, &Affine), b: (&Shape, &Affine)) -> f64 {
+    let inverse = linear(a.1).inverse();
+    let place = |map: &Affine| DVec3::new(map.rows[0][3], map.rows[1][3], map.rows[2][3]);
+    // b's canonical coordinates in a's.
+    let (between, shift) = (inverse * linear(b.1), inverse * (place(b.1) - place(a.1)));
+    let mut smallest = f64::INFINITY;
+    let mut take = |local: f64, axis: usize| {
+        // What composed maps may round is contact.
+        let scale = 1.0 + shift.abs().max_element() + between.row(axis).abs().max_element();
+        if local.abs() > ROUNDED * scale {
+            smallest = smallest.min(local.abs() / inverse.row(axis).length());
+        }
+    };
+    for (axis, places) in faces(a.0) {
+        let row = between.row(*axis).to_array();
+        for (other, others) in faces(b.0) {
+            let size: f64 = row.iter().map(|x| x.abs()).sum();
+            if row[*other].abs() < size * (1.0 - ROUNDED) {
+                continue;
+            }
+            for p in *places {
+                for q in *others {
+                    take(row[*other] * q + shift[*axis] - p, *axis);
+                }
+            }
+        }
+    }
+    if let Some(count) = round(a.0).filter(|count| round(b.0) == Some(*count)) {
+        let columns = [between.x_axis, between.y_axis, between.z_axis];
+        let lengths = columns.map(|column| column.length());
+        let alike = (0..count).all(|i| {
+            let even = (lengths[i] - lengths[0]).abs() <= ROUNDED * lengths[0];
+            let square =
+                (0..i).all(|j| columns[i].dot(columns[j]).abs() <= ROUNDED * lengths[0].powi(2));
+            even && square && shift[i].abs() <= ROUNDED * (1.0 + lengths[0])
+        });
+        // The axis itself is kept.
+        let upright =
+            count == 3 || columns[2].x.abs().max(columns[2].y.abs()) <= ROUNDED * lengths[2];
+        if alike && upright {
+            (0..count).for_each(|axis| take(lengths[0] - 1.0, axis));
+        }
+    }
+    smallest
+}
