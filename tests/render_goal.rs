@@ -173,9 +173,13 @@ fn the_worst_block_reaches_its_goal_too() {
             }
         }
         let worst = sums.into_iter().fold(0.0, f64::max).sqrt();
+        let ratio = worst / goal.error;
+        // Scrambled nets gain more from the pilot to the picture than its law of −1/2 says, and
+        // come out better than asked for.
+        let least = if sampler == "sobol" { 0.4 } else { 0.8 };
         assert!(
-            (worst / goal.error - 1.0).abs() < 0.2,
-            "{sampler}: {worst} with {} spp",
+            (least..1.2).contains(&ratio),
+            "{sampler}: {ratio} with {} spp",
             chosen.samples
         );
     }

@@ -304,7 +304,7 @@ fn grids_that_cannot_be_are_refused_with_what_would_fit() {
     assert!(mixed.contains("another picture"), "{mixed}");
     let long = refused(&["--over", "spp=1..16777216x4", "--budget", "2"]);
     assert!(
-        long.contains("an axis that ends at spp=") && long.contains("--budget 2"),
+        long.contains("an axis that ends at spp=") && long.contains("--budget is 2 s"),
         "{long}"
     );
     let one = refused(&[

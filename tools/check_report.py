@@ -113,7 +113,11 @@ const images = [...document.querySelectorAll("#pictures img")];
 return {
   split: root.getPropertyValue("--split"),
   zoom: parseFloat(root.getPropertyValue("--zoom")),
-  transforms: [...new Set(images.map((image) => getComputedStyle(image).transform))].length,
+  // Magnification and place as shares of the picture, whose widths may differ by parts of a pixel.
+  transforms: [...new Set(images.map((image) => {
+    const m = new DOMMatrix(getComputedStyle(image).transform);
+    return [m.a, m.e / image.offsetWidth, m.f / image.offsetHeight].map((x) => x.toFixed(2)).join();
+  }))].length,
   scale: new DOMMatrix(getComputedStyle(images[0]).transform).a,
   clips: [...new Set([...document.querySelectorAll(".over")].map((e) => getComputedStyle(e).clipPath))],
   loaded: images.every((image) => image.complete && image.naturalWidth > 0),

@@ -42,9 +42,6 @@ const FIRST: u32 = 8;
 /// Camera paths of the smallest pilot of a picture: what one path in ten thousand brings is seen by
 /// it but for one case in 700 (0.9999^65536), and it takes milliseconds.
 const PATHS: u32 = 1 << 16;
-/// Most relative standard error that a pilot's estimate of the squared error may have: the error
-/// itself is known to a tenth then. Rare, large contributions make it worse, and the pilot grows.
-const KNOWN: f64 = 0.2;
 /// How much larger the next pilot is at most.
 const GROWTH: f64 = 4.0;
 
@@ -115,13 +112,12 @@ pub fn choose(
             sums.resize(squares.len(), Squares::default());
             for (sum, square) in sums.iter_mut().zip(squares) {
                 sum.sum += square.sum;
-                sum.squares += square.squares;
             }
         }
         let worst = sums.into_iter().reduce(Squares::larger).unwrap_or_default();
         let error = (worst.sum / f64::from(target.renders())).sqrt();
         let wanted = f64::from(samples) * times(goal.error, (samples, error), before);
-        let enough = wanted <= SLACK * near * f64::from(samples) && worst.relative_error() <= KNOWN;
+        let enough = wanted <= SLACK * near * f64::from(samples);
         if enough || samples == most || error.is_nan() {
             // Two samples are the least that have a standard error.
             let chosen = (wanted.ceil().min(f64::from(most)) as u32).max(2.min(most));
@@ -151,12 +147,10 @@ fn times(wanted: f64, (samples, error): (u32, f64), before: Option<(u32, f64)>) 
     libm::pow(wanted / error, 1.0 / slope)
 }
 
-/// The squared relative standard error of a mean over pixels: Σ of the pixels' own, and Σ of the
-/// squares of those, which says how well the sum is known.
+/// The squared relative standard error of a mean over pixels.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Squares {
     sum: f64,
-    squares: f64,
 }
 
 impl Squares {
@@ -167,25 +161,12 @@ impl Squares {
             let square = error * error;
             total += value;
             own.sum += square;
-            own.squares += square * square;
         }
         if own.sum == 0.0 {
             return Self::default();
         }
-        let unit = total * total;
         Self {
-            sum: own.sum / unit,
-            squares: own.squares / (unit * unit),
-        }
-    }
-
-    /// Relative standard error of the sum: its terms are independent, and the variance of each is
-    /// at most the expectation of its square.
-    fn relative_error(self) -> f64 {
-        if self.sum == 0.0 {
-            0.0
-        } else {
-            self.squares.sqrt() / self.sum
+            sum: own.sum / (total * total),
         }
     }
 
