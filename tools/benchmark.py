@@ -51,7 +51,8 @@ class MitsubaTimer:
 
     def __init__(self, path, image):
         self.scenes = [
-            mitsuba_scene.load(path, image=image | {"spp": spp}, sampler=image["sampler"]) for spp in (image["spp"], 1)
+            mitsuba_scene.load(path, image=image | {"spp": spp}, sampler=image["sampler"], fast=True)
+            for spp in (image["spp"], 1)
         ]
         for scene in self.scenes:
             mitsuba_scene.render(scene)

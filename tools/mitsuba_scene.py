@@ -40,6 +40,8 @@ MITSUBA_Y_INTEGRAL = 106.7502594
 ETALON_Y_INTEGRAL = 106.856914916767
 # Half sizes, in camera distances, of the squares that make up a plane.
 PLANE_EXTENTS = [8, 1000, 100_000]
+# The same where only the time counts: one square.
+FAST_EXTENTS = [1000]
 # Distance between the two copies of a surface that emits on both sides, of its extent: a hundred
 # times the rounding of coordinates in single precision, so that rays tell the copies apart.
 SIDES_GAP = 1e-5
@@ -80,8 +82,9 @@ def transform(matrix):
 class Builder:
     """One scene file on its way to a Mitsuba dict; glass has the index at `wavelength` nm."""
 
-    def __init__(self, scene, folder, wavelength=None):
+    def __init__(self, scene, folder, wavelength=None, extents=PLANE_EXTENTS):
         self.scene = scene
+        self.extents = extents
         self.wavelength = wavelength
         self.spectra = spectra.Spectra(scene.get("spectra", {}), folder)
         camera = scene["camera"]
@@ -215,10 +218,10 @@ class Builder:
 
     def plane(self, place, material, key, extra):
         """A square about the origin and rings of four rectangles around it, out to the last of
-        `PLANE_EXTENTS`: single precision resolves places on a rectangle to 6e-8 of its size only."""
+        the extents: single precision resolves places on a rectangle to 6e-8 of its size only."""
         unit = self.view / np.linalg.norm(place.to_world[:3, :2], axis=0)
         result = {}
-        for part, corners in plane_parts(unit).items():
+        for part, corners in plane_parts(unit, self.extents).items():
             (x0, x1), (y0, y1) = corners
             half = np.array([(x1 - x0) / 2, (y1 - y0) / 2, 1.0])
             centre = np.array([(x0 + x1) / 2, (y0 + y1) / 2, 0.0])
@@ -287,11 +290,11 @@ def canonical_parts(kind):
     return {"_side": ("cylinder", side), "_top": ("disk", top), "_bottom": ("disk", bottom)}
 
 
-def plane_parts(unit):
-    """Rectangles ((x from, to), (y from, to)) by suffix that make up a plane; `unit` (2) is the
-    camera's distance in canonical coordinates."""
+def plane_parts(unit, extents):
+    """Rectangles ((x from, to), (y from, to)) by suffix that make up a plane out to each of `extents`,
+    in units of the camera's distance, which is `unit` (2) in canonical coordinates."""
     parts, inner = {}, np.zeros(2)
-    for index, extent in enumerate(PLANE_EXTENTS):
+    for index, extent in enumerate(extents):
         (a, b), (x, y) = inner, extent * unit
         if index == 0:
             parts[""] = ((-x, x), (-y, y))
@@ -415,18 +418,20 @@ def make_film(size, kind, bands=()):
     return film | {"type": "specfilm"} | responses
 
 
-def load(path, panel=None, image=None, sampler="independent", seed=0, film="standard"):
-    """A scene file as a Mitsuba scene; `image` replaces keys of its [image]."""
+def load(path, panel=None, image=None, sampler="independent", seed=0, film="standard", fast=False):
+    """A scene file as a Mitsuba scene; `image` replaces keys of its [image]. See `load_tables`."""
     tables = scene_file.load(path, panel)
     tables["image"] = tables["image"] | (image or {})
     film = make_film(tables["image"]["size"], film)
-    return load_tables(tables, Path(path).parent, sampler, seed, film)
+    return load_tables(tables, Path(path).parent, sampler, seed, film, fast=fast)
 
 
-def load_tables(tables, folder, sampler, seed, film, wavelength=None):
+def load_tables(tables, folder, sampler, seed, film, wavelength=None, fast=False):
     """The tables of a scene as a Mitsuba scene. Its optimiser is left out: it joins rectangles of the
-    same material, and rays then leak through the plane of figure 2 (+0.07 % light)."""
-    return mi.load_dict(Builder(tables, folder, wavelength).build(sampler, seed, film), optimize=False)
+    same material, and rays then leak through the plane of figure 2 (+0.07 % light). `fast` leaves such
+    care out, for measuring time."""
+    builder = Builder(tables, folder, wavelength, FAST_EXTENTS if fast else PLANE_EXTENTS)
+    return mi.load_dict(builder.build(sampler, seed, film), optimize=fast)
 
 
 def render(scene, seed=0):
