@@ -33,32 +33,6 @@ const MOST: u64 = 24_000_000;
 /// millionths.
 const KNOWN: [(&str, &str); 1] = [("cornell_box", "S0.705,000000nm")];
 
-/// Rows of pixels that are not judged: Mitsuba has no infinite plane, and the square that stands for
-/// it ends 1000 camera distances away, 0.03 pixels below the horizon, which a lens blurs over several
-/// rows. The row is up to 3 % too bright there.
-const HORIZON: [(&str, std::ops::Range<usize>); 6] = [
-    ("fig7_mirrors_depth_2", 28..29),
-    ("fig7_mirrors_depth_8", 28..29),
-    ("fig7_mirrors_depth_64", 28..29),
-    ("fig8_lens_0.1_20", 0..4),
-    ("fig8_lens_0.8_20", 0..8),
-    ("fig8_lens_0.8_10", 0..8),
-];
-
-/// The picture with black and exact pixels where it is not judged.
-fn judged(name: &str, mut side: Side) -> Side {
-    for (_, rows) in HORIZON.iter().filter(|(known, _)| *known == name) {
-        let pixels = rows.start * side.width..rows.end * side.width;
-        for channel in &mut side.channels {
-            channel.values[pixels.clone()].fill(0.0);
-            if let Some(variances) = &mut channel.variances {
-                variances[pixels.clone()].fill(0.0);
-            }
-        }
-    }
-    side
-}
-
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -150,11 +124,11 @@ fn case(name: &str, path: &Path) -> (Case, Side) {
     let known = |channel: &str| KNOWN.contains(&(name, channel));
     reference.channels.retain(|channel| !known(&channel.name));
     let case = Case::of_reference(name, &reference, root()).unwrap_or_else(|e| panic!("{e}"));
-    (case, judged(name, reference))
+    (case, reference)
 }
 
 fn subject(case: Case, reference: Side, level: f64) -> Subject {
-    let pilot = judged(&case.name, case.render(PILOT, 1 << 32 | seed()).unwrap());
+    let pilot = case.render(PILOT, 1 << 32 | seed()).unwrap();
     let planned = plan(&case, (&pilot, PILOT), &reference, MOST, level);
     Subject {
         case,
@@ -170,10 +144,7 @@ fn outcome(subject: &Subject, index: usize, levels: Levels) -> Outcome {
         &subject.planned,
         &subject.reference,
         levels,
-        |spp, round| {
-            let picture = subject.case.render(spp, seed(round))?;
-            Ok(judged(&subject.case.name, picture))
-        },
+        |spp, round| subject.case.render(spp, seed(round)),
     )
     .unwrap_or_else(|e| panic!("{e}"))
 }
