@@ -230,7 +230,7 @@ fn image(report: &Report, node: &Node) -> Option<Image> {
         report.choice(what, node, &choices)
     });
     let wavelengths = fields.optional("wavelengths", None, |what, node| {
-        let count = report.count(what, node, 4..=8)?;
+        let count = report.count(what, node, 1..=64)?;
         if count == 4 || count == 8 {
             return Some(Some(count));
         }
