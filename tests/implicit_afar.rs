@@ -6,12 +6,11 @@
 )]
 
 use std::path::Path;
-use std::time::Duration;
 
 use etalon::integrate::chunk;
 use etalon::plan::{Plan, explain};
 use etalon::render::tile::Window;
-use etalon::render::{Instructions, Progress, Request, render, replay};
+use etalon::render::{Instructions, Request, Unwatched, render, replay};
 use etalon::scene::{Overrides, parse};
 use glam::DVec3;
 
@@ -86,14 +85,6 @@ fn rays_from_afar_leave_surfaces_as_others_do() {
     }
 }
 
-struct Silent;
-
-impl Progress for Silent {
-    fn passed(&mut self, _: u32, _: u32, _: Duration, _: Option<f64>) -> bool {
-        true
-    }
-}
-
 /// A scene with lens, lamp, glass and implicit surfaces of both kinds, all lengths times a scale.
 fn scaled(scale: f64) -> Vec<[u64; 3]> {
     let s = |x: f64| format!("{:?}", x * scale);
@@ -131,15 +122,14 @@ fn scaled(scale: f64) -> Vec<[u64; 3]> {
         s(0.5),
         at(1.0, 4.0, 3.0),
     );
-    let (plan, [x1, y1]) = plan(&text);
-    let (x0, y0) = (0, 0);
+    let (plan, size) = plan(&text);
     let request = Request {
-        window: Window { x0, y0, x1, y1 },
+        window: Window::whole(size),
         samples: 8,
         time: None,
         instructions: Instructions::best(),
     };
-    let rendered = render(&plan, &request, &mut Silent);
+    let rendered = render(&plan, &request, &mut Unwatched);
     let pixels = rendered.xyz();
     pixels.iter().map(|e| e.mean.map(f64::to_bits)).collect()
 }

@@ -6,14 +6,13 @@
 )]
 
 use std::path::Path;
-use std::time::Duration;
 
 use etalon::integrate::list::List;
 use etalon::integrate::model::Model;
 use etalon::math::lanes::Scalar;
 use etalon::plan::{Plan, Tables};
 use etalon::render::tile::Window;
-use etalon::render::{Instructions, Progress, Request, render};
+use etalon::render::{Instructions, Request, Unwatched, render};
 use etalon::scene::{self, Overrides, Scene};
 
 /// A room whose walls have everything on one side, with a lamp below its ceiling; objects 0 to 3.
@@ -126,15 +125,6 @@ fn lights_without_a_surface_count_as_ends() {
     assert_eq!(occluders(&sun), [2, 3]);
 }
 
-/// Keeps on.
-struct Quiet;
-
-impl Progress for Quiet {
-    fn passed(&mut self, _: u32, _: u32, _: Duration, _: Option<f64>) -> bool {
-        true
-    }
-}
-
 /// The bits of a picture whose shadow rays ask `hiding`, or what the plan says.
 fn bits(scene: &Scene, hiding: Option<&[u32]>) -> Vec<[u64; 3]> {
     let mut plan = Plan::new(scene, false).unwrap();
@@ -147,19 +137,13 @@ fn bits(scene: &Scene, hiding: Option<&[u32]>) -> Vec<[u64; 3]> {
             Tables::Double(tables) => ask_only(&mut tables.0, hiding),
         }
     }
-    let [x1, y1] = scene.image.size;
     let request = Request {
-        window: Window {
-            x0: 0,
-            y0: 0,
-            x1,
-            y1,
-        },
+        window: Window::whole(scene.image.size),
         samples: scene.image.spp,
         time: None,
         instructions: Instructions::best(),
     };
-    let estimates = render(&plan, &request, &mut Quiet).xyz();
+    let estimates = render(&plan, &request, &mut Unwatched).xyz();
     estimates.iter().map(|e| e.mean.map(f64::to_bits)).collect()
 }
 

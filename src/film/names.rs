@@ -11,6 +11,8 @@ pub const XYZ: [&str; 3] = ["X", "Y", "Z"];
 pub const BEAUTY: &str = "";
 /// Layer: standard error of the pixel's mean, in the unit of the channel it belongs to.
 pub const STANDARD_ERROR: &str = "standard_error";
+/// Layer: variance of the pixel's mean, which references keep in place of standard errors.
+pub const VARIANCE: &str = "variance";
 /// Layer: unit normal of the first visible surface, world coordinates.
 pub const NORMAL: &str = "N";
 /// Layer: albedo of the first visible surface.

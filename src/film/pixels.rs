@@ -8,7 +8,6 @@ use std::ops::Range;
 
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Replicates;
-use crate::spectrum::observer::XYZ_TO_LINEAR_SRGB;
 
 /// Sums of X, Y, Z by pixel and replicate.
 #[derive(Debug, Clone)]
@@ -81,11 +80,6 @@ impl<const N: usize> Estimate<N> {
 pub fn is_finite<T: Scalar>(xyz: &[T; 3]) -> bool {
     let [x, y, z] = xyz;
     (x.to_f64() + y.to_f64() + z.to_f64()).is_finite()
-}
-
-/// XYZ to linear Rec. 709.
-pub fn to_rgb(xyz: [f64; 3]) -> [f64; 3] {
-    XYZ_TO_LINEAR_SRGB.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])
 }
 
 impl Pixels {

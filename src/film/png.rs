@@ -17,9 +17,8 @@ use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 
 use super::{Error, whole};
+use crate::spectrum::observer::luminance;
 
-/// Luminance of linear RGB: Rec. ITU-R BT.709-6, item 3.2.
-const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 /// Part of the finite pixels that may be brighter than white.
 const BRIGHTEST: f64 = 0.01;
 /// A picture is lightened until its percentile reaches this, the usual mid-grey of 18 %.
@@ -135,11 +134,6 @@ pub fn encode(rgb: [f32; 3], exposure: f64) -> [u8; 3] {
 /// Whether all components are finite.
 fn is_finite(rgb: [f32; 3]) -> bool {
     rgb.into_iter().all(f32::is_finite)
-}
-
-/// Luminance, Y of the colour.
-fn luminance(rgb: [f64; 3]) -> f64 {
-    LUMINANCE[0] * rgb[0] + LUMINANCE[1] * rgb[1] + LUMINANCE[2] * rgb[2]
 }
 
 /// The colour, mixed with the grey of its luminance until no component is negative.

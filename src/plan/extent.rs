@@ -82,16 +82,18 @@ pub fn perpendicular(a: DVec3, b: DVec3) -> bool {
 
 /// Whether the linear part is a rotation or reflection times a scale, up to rounding.
 pub fn is_similarity(to_world: &Affine) -> bool {
-    let [a, b, c] = columns(to_world);
-    let same = |x: DVec3, y: DVec3| (x.length() - y.length()).abs() <= ROUNDED * x.length();
-    same(a, b) && same(a, c) && perpendicular(a, b) && perpendicular(b, c) && perpendicular(c, a)
+    let [a, _, c] = columns(to_world);
+    is_right_circular(to_world) && same_length(a, c)
+}
+
+fn same_length(a: DVec3, b: DVec3) -> bool {
+    (a.length() - b.length()).abs() <= ROUNDED * a.length()
 }
 
 /// Whether the map takes the canonical cylinder to a right circular one, up to rounding.
 pub fn is_right_circular(to_world: &Affine) -> bool {
     let [a, b, c] = columns(to_world);
-    let same = (a.length() - b.length()).abs() <= ROUNDED * a.length();
-    same && perpendicular(a, b) && perpendicular(b, c) && perpendicular(c, a)
+    same_length(a, b) && perpendicular(a, b) && perpendicular(b, c) && perpendicular(c, a)
 }
 
 /// Pairs are compared up to this many objects; larger scenes are dense, and the pixel decides.

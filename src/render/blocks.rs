@@ -9,12 +9,12 @@ pub const EDGE: usize = 8;
 
 /// Pixels of each block of a picture, row by row; blocks at the right and lower edge may be
 /// smaller.
-pub fn members(width: usize, height: usize) -> Vec<Vec<usize>> {
+pub fn members(width: usize, height: usize, edge: usize) -> Vec<Vec<usize>> {
     let mut blocks = Vec::new();
-    for top in (0..height).step_by(EDGE) {
-        for left in (0..width).step_by(EDGE) {
-            let rows = top..(top + EDGE).min(height);
-            let columns = left..(left + EDGE).min(width);
+    for top in (0..height).step_by(edge) {
+        for left in (0..width).step_by(edge) {
+            let rows = top..(top + edge).min(height);
+            let columns = left..(left + edge).min(width);
             let row = |y: usize| columns.clone().map(move |x| y * width + x);
             blocks.push(rows.flat_map(row).collect());
         }
@@ -27,7 +27,7 @@ pub fn luminances(rendered: &Rendered) -> Vec<Estimate> {
     let window = rendered.window;
     let pixels = rendered.xyz();
     let freedom = f64::from(rendered.replicates()) - 1.0;
-    members(window.width() as usize, window.height() as usize)
+    members(window.width() as usize, window.height() as usize, EDGE)
         .iter()
         .map(|block| {
             let values: Vec<f64> = block.iter().map(|i| pixels[*i].mean[1]).collect();

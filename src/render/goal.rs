@@ -47,22 +47,11 @@ const GROWTH: f64 = 4.0;
 
 impl Target {
     /// Samples a pixel of the first pilot. A block's share of [`PATHS`] would be too much; it has
-    /// 4096 paths in four renders.
+    /// 1024 paths, and as many again until its error is known.
     fn first(self, pixels: usize) -> u32 {
         match self {
             Self::Image => FIRST.max(PATHS / pixels.clamp(1, PATHS as usize) as u32),
             Self::Block => 2 * FIRST,
-        }
-    }
-
-    /// Renders of a pilot. A picture's mean has the degrees of freedom of all its pixels. Of blocks
-    /// the largest estimated error counts, which is too large by chance: with four renders of two
-    /// replicates a block's standard error has 4 × 64 degrees of freedom, so its relative standard
-    /// error is 1/√512, 4 %, and the largest of 10⁴ blocks may be four of those too large.
-    fn renders(self) -> u32 {
-        match self {
-            Self::Image => 1,
-            Self::Block => 4,
         }
     }
 
@@ -77,6 +66,12 @@ impl Target {
     }
 }
 
+/// Degrees of freedom k that the worst place's variance is to have: its square root, the error,
+/// then has a relative standard error of 1/√(2k), 18 %. A block of 64 alike pixels has them at
+/// once; one whose variance is all in one pixel, at the edge of a lamp, by sixteen renders.
+const FREEDOM: f64 = 16.0;
+/// Renders of a pilot at most: a variance that rare paths bear would go on without end.
+const RENDERS: u32 = 16;
 /// A pilot will do that is so much smaller than it was meant to be.
 const SLACK: f64 = 1.5;
 /// Slopes of the standard error over samples: independent samples have −1/2, and no sampler here
@@ -85,9 +80,9 @@ const SLOPES: [f64; 2] = [-1.0, -0.5];
 
 /// Standard error over mean of what is aimed at; NaN where there is none.
 pub fn reached(rendered: &Rendered, target: Target) -> f64 {
-    let squares = squares(rendered, target);
-    let worst = squares.into_iter().reduce(Squares::larger);
-    worst.map_or(0.0, |worst| worst.sum.sqrt())
+    let mut pilot = Pilot::default();
+    pilot.add(rendered, target);
+    pilot.worst().square.sqrt()
 }
 
 /// Chooses the samples a pixel of a picture of so many pixels, at most `most`. `pilot` renders with
@@ -104,18 +99,15 @@ pub fn choose(
     let near = target.near();
     let mut before: Option<(u32, f64)> = None;
     loop {
-        let mut sums: Vec<Squares> = Vec::new();
-        for _ in 0..target.renders() {
-            let squares = squares(&pilot(samples, number)?, target);
+        let mut joined = Pilot::default();
+        let error = loop {
+            joined.add(&pilot(samples, number)?, target);
             number += 1;
             spent += u64::from(samples);
-            sums.resize(squares.len(), Squares::default());
-            for (sum, square) in sums.iter_mut().zip(squares) {
-                sum.sum += square.sum;
+            if joined.is_certain() {
+                break joined.error();
             }
-        }
-        let worst = sums.into_iter().reduce(Squares::larger).unwrap_or_default();
-        let error = (worst.sum / f64::from(target.renders())).sqrt();
+        };
         let wanted = f64::from(samples) * times(goal.error, (samples, error), before);
         let enough = wanted <= SLACK * near * f64::from(samples);
         if enough || samples == most || error.is_nan() {
@@ -147,51 +139,105 @@ fn times(wanted: f64, (samples, error): (u32, f64), before: Option<(u32, f64)>) 
     libm::pow(wanted / error, 1.0 / slope)
 }
 
-/// The squared relative standard error of a mean over pixels.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-struct Squares {
-    sum: f64,
+/// What renders of a pilot say of one place.
+#[derive(Debug, Clone, Copy, Default)]
+struct Place {
+    /// Sum of the pixels' luminances.
+    total: f64,
+    /// Sum of their variances.
+    variance: f64,
+    /// Sum of the squares of these.
+    square: f64,
 }
 
-impl Squares {
-    /// Of the mean luminance of these pixels: black ones have no error.
-    fn of(pixels: impl Iterator<Item = (f64, f64)>) -> Self {
-        let (mut total, mut own) = (0.0, Self::default());
-        for (value, error) in pixels {
-            let square = error * error;
-            total += value;
-            own.sum += square;
+/// A squared relative standard error, NaN where there is none, and its degrees of freedom (see
+/// [`Estimate::mean_of`](crate::stats::Estimate::mean_of)).
+#[derive(Debug, Clone, Copy)]
+struct Relative {
+    square: f64,
+    freedom: f64,
+}
+
+impl Relative {
+    /// Of what is known exactly.
+    const NONE: Self = Self {
+        square: 0.0,
+        freedom: f64::INFINITY,
+    };
+}
+
+/// Renders of equally many samples, joined: one place, or one a block.
+#[derive(Debug, Default)]
+struct Pilot {
+    places: Vec<Place>,
+    renders: u32,
+    /// Degrees of freedom of a pixel's variance.
+    freedom: f64,
+}
+
+impl Pilot {
+    fn add(&mut self, rendered: &Rendered, target: Target) {
+        let pixels = rendered.xyz();
+        let window = rendered.window;
+        let blocks = match target {
+            Target::Image => vec![(0..pixels.len()).collect()],
+            Target::Block => blocks::members(
+                window.width() as usize,
+                window.height() as usize,
+                blocks::EDGE,
+            ),
+        };
+        self.places.resize(blocks.len(), Place::default());
+        for (place, block) in self.places.iter_mut().zip(blocks) {
+            for pixel in block {
+                let variance = pixels[pixel].standard_error[1].powi(2);
+                place.total += pixels[pixel].mean[1];
+                place.variance += variance;
+                place.square += variance * variance;
+            }
         }
-        if own.sum == 0.0 {
-            return Self::default();
+        self.renders += 1;
+        self.freedom = f64::from(rendered.replicates()) - 1.0;
+    }
+
+    /// The place whose error is largest.
+    fn worst(&self) -> Relative {
+        let places = self.places.iter().map(|place| self.relative(place));
+        places.fold(Relative::NONE, |a, b| {
+            if a.square >= b.square || a.square.is_nan() {
+                a
+            } else {
+                b
+            }
+        })
+    }
+
+    /// Of one render's place; a black one has no error.
+    fn relative(&self, place: &Place) -> Relative {
+        if place.variance == 0.0 {
+            return Relative::NONE;
         }
-        Self {
-            sum: own.sum / (total * total),
+        let freedom = (self.freedom + 2.0) * place.variance * place.variance / place.square;
+        Relative {
+            square: f64::from(self.renders) * place.variance / (place.total * place.total),
+            freedom: freedom.max(self.freedom),
         }
     }
 
-    /// The larger one; what is no number counts as largest.
-    fn larger(self, other: Self) -> Self {
-        if self.sum >= other.sum || self.sum.is_nan() {
-            self
+    fn is_certain(&self) -> bool {
+        self.renders == RENDERS || !(self.worst().freedom < FREEDOM)
+    }
+
+    /// Relative standard error to plan with. Samples in proportion to an estimated variance s² of
+    /// k degrees of freedom leave the picture σ²/s² times the wanted one, on average k/(k − 2)
+    /// (the mean of an inverse χ²); s² is taken that much larger.
+    fn error(&self) -> f64 {
+        let Relative { square, freedom } = self.worst();
+        let larger = if freedom.is_finite() {
+            freedom / (freedom - 2.0).max(1.0)
         } else {
-            other
-        }
-    }
-}
-
-/// Squared relative standard errors: one of the picture, or one a block.
-fn squares(rendered: &Rendered, target: Target) -> Vec<Squares> {
-    let pixels = rendered.xyz();
-    let pixel = |i: usize| (pixels[i].mean[1], pixels[i].standard_error[1]);
-    match target {
-        Target::Image => vec![Squares::of((0..pixels.len()).map(pixel))],
-        Target::Block => {
-            let window = rendered.window;
-            blocks::members(window.width() as usize, window.height() as usize)
-                .into_iter()
-                .map(|block| Squares::of(block.into_iter().map(pixel)))
-                .collect()
-        }
+            1.0
+        };
+        (square * larger).sqrt()
     }
 }

@@ -13,4 +13,4 @@ pub mod tile;
 
 pub use crate::math::instructions::Instructions;
 pub use replay::replay;
-pub use session::{Progress, Rendered, Request, render, render_binned};
+pub use session::{Progress, Rendered, Request, Unwatched, render, render_binned};

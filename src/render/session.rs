@@ -8,11 +8,12 @@ use rayon::prelude::*;
 use super::bins::{BinGrid, Bins};
 use super::pass;
 use super::tile::{Tile, Window};
-use crate::film::pixels::{Estimate, to_rgb};
+use crate::film::pixels::Estimate;
 use crate::integrate::chunk;
 use crate::integrate::intersect::Rungs;
 use crate::math::instructions::Instructions;
 use crate::plan::Plan;
+use crate::spectrum::observer::xyz_to_linear_srgb;
 
 /// What to render besides what the plan says.
 #[derive(Debug, Clone, Copy)]
@@ -32,6 +33,16 @@ pub trait Progress {
     /// Called after each pass with the samples done, the samples wanted, the time spent and the
     /// standard error of the mean luminance relative to it, where known.
     fn passed(&mut self, done: u32, wanted: u32, spent: Duration, error: Option<f64>) -> bool;
+}
+
+/// Progress that nobody watches.
+#[derive(Debug, Clone, Copy)]
+pub struct Unwatched;
+
+impl Progress for Unwatched {
+    fn passed(&mut self, _: u32, _: u32, _: Duration, _: Option<f64>) -> bool {
+        true
+    }
 }
 
 /// A finished render.
@@ -165,7 +176,7 @@ impl MeanLuminance {
 impl Rendered {
     /// Every pixel's estimate in linear Rec. 709, row by row.
     pub fn rgb(&self) -> Vec<Estimate> {
-        self.estimates(to_rgb)
+        self.estimates(xyz_to_linear_srgb)
     }
 
     /// Every pixel's estimate in X, Y, Z, row by row.

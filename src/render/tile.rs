@@ -30,6 +30,16 @@ pub struct Window {
 }
 
 impl Window {
+    /// All pixels of an image of this width and height.
+    pub fn whole([x1, y1]: [u32; 2]) -> Self {
+        Self {
+            x0: 0,
+            y0: 0,
+            x1,
+            y1,
+        }
+    }
+
     /// Number of columns.
     pub fn width(&self) -> u32 {
         self.x1 - self.x0

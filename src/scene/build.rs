@@ -206,12 +206,7 @@ fn image(report: &Report, node: &Node) -> Option<Image> {
         report.count(what, node, 1..=u32::MAX).map(Some)
     });
     let sampler = fields.optional("sampler", SamplerKind::Sobol, |what, node| {
-        let choices = [
-            ("sobol", SamplerKind::Sobol),
-            ("independent", SamplerKind::Independent),
-            ("stratified", SamplerKind::Stratified),
-            ("center", SamplerKind::Center),
-        ];
+        let choices = SamplerKind::ALL.map(|kind| (kind.name(), kind));
         report.choice(what, node, &choices)
     });
     let replicates = fields.optional("replicates", None, |what, node| {

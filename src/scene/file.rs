@@ -25,6 +25,17 @@ pub struct Overrides {
     pub finder: Option<String>,
 }
 
+impl Overrides {
+    /// Values of [`Self::set`] out of `key=value` pairs between blanks, as references record them.
+    pub fn pairs(text: &str) -> Vec<(String, String)> {
+        let pairs = text.split_whitespace();
+        pairs
+            .filter_map(|pair| pair.split_once('='))
+            .map(|(key, value)| (key.to_owned(), value.to_owned()))
+            .collect()
+    }
+}
+
 /// Reads the scene file at `path`.
 ///
 /// # Errors

@@ -145,6 +145,27 @@ pub enum SamplerKind {
     Center,
 }
 
+impl SamplerKind {
+    /// All of them, the usual one first.
+    pub const ALL: [Self; 4] = [
+        Self::Sobol,
+        Self::Independent,
+        Self::Stratified,
+        Self::Center,
+    ];
+
+    /// The name in scene files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Independent => "independent",
+            Self::Stratified => "stratified",
+            Self::Sobol => "sobol",
+            Self::Center => "center",
+        }
+    }
+}
+
 /// What the user says about precision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PrecisionChoice {

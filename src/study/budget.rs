@@ -8,8 +8,9 @@ use super::measure::measure;
 use super::own::FIRST;
 use super::reference::Reference;
 use super::seeds::seed;
-use super::subject::{Ready, Unwatched};
+use super::subject::Ready;
 use crate::film::pixels::{Estimate, Pixels};
+use crate::render::Unwatched;
 use crate::scene::SamplerKind;
 
 /// What a render costs.

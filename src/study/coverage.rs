@@ -13,8 +13,9 @@
 //! At 95 % the coverage then misses by −0.231 over it: it is at least 94 % from 24 contributing
 //! samples on, which is [`ENOUGH`].
 
-use super::subject::{Ready, Unwatched};
-use crate::render::blocks::{luminances, members};
+use super::subject::Ready;
+use crate::render::Unwatched;
+use crate::render::blocks::{EDGE, luminances, members};
 use crate::stats::Estimate;
 
 /// Level of an interval's miss.
@@ -131,7 +132,10 @@ impl Survey {
                 contributing: second * second * second / (third * third),
             })
         };
-        members(self.width, self.height).iter().map(of).collect()
+        members(self.width, self.height, EDGE)
+            .iter()
+            .map(of)
+            .collect()
     }
 }
 

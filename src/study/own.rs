@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::measure::planes;
-use super::reference::{Reference, ReferenceError, VARIANCE};
+use super::reference::{Reference, ReferenceError};
 use super::subject::Ready;
 use crate::film::provenance::hash;
 use crate::film::{Attribute, Picture, exr, names};
@@ -99,7 +99,7 @@ pub fn write(
         (0..channels[0].len()).map(pixel).collect::<Vec<_>>()
     };
     picture.push_triple(names::BEAUTY, names::RGB, &triples(&reference.channels));
-    picture.push_triple(VARIANCE, names::RGB, &triples(&reference.variances));
+    picture.push_triple(names::VARIANCE, names::RGB, &triples(&reference.variances));
     let source = &ready.scene.source;
     let texts = [
         ("sceneFile", source.path.clone()),

@@ -2,15 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::film::names::{self, VARIANCE};
 use crate::film::provenance::hash;
-use crate::film::{Attribute, Picture, exr, names};
-use crate::scene::Scene;
+use crate::film::{Attribute, Picture, exr};
+use crate::scene::{Overrides, Scene};
 use crate::spectrum::Spectrum;
 use crate::spectrum::observer::{spectrum_to_xyz, xyz_to_linear_srgb};
 use crate::stats::metrics::{RELMSE_EPSILON, mean};
-
-/// The layer that holds the variance of a reference's pixel.
-pub const VARIANCE: &str = "variance";
 
 /// Linear R, G, B of every pixel with their variances.
 #[derive(Debug, Clone, PartialEq)]
@@ -264,7 +262,7 @@ fn check_subject(
     }
     let found = variant(
         &text("panel").unwrap_or_default(),
-        &pairs(&text("overrides").unwrap_or_default()),
+        &Overrides::pairs(&text("overrides").unwrap_or_default()),
     );
     let wanted = variant(scene.panel.as_deref().unwrap_or_default(), subject.set);
     if found == wanted {
@@ -276,15 +274,6 @@ fn check_subject(
             wanted,
         })
     }
-}
-
-/// `key=value` pairs out of an attribute: words without spaces of their own.
-fn pairs(text: &str) -> Vec<(String, String)> {
-    let words = text.split_whitespace();
-    words
-        .filter_map(|word| word.split_once('='))
-        .map(|(key, value)| (key.to_owned(), value.to_owned()))
-        .collect()
 }
 
 /// The panel and what else changes what is estimated, in words.

@@ -11,7 +11,7 @@ use crate::plan::choose::Precision;
 use crate::plan::{Plan, PlanError};
 use crate::render::tile::Window;
 use crate::render::{Instructions, Progress, Rendered, Request, render};
-use crate::scene::{self, Overrides, SamplerKind, Scene, SceneError};
+use crate::scene::{self, Overrides, Scene, SceneError};
 
 /// What is studied and on what.
 #[derive(Debug, Clone)]
@@ -101,17 +101,6 @@ pub fn named(choices: &[(Key, String)]) -> String {
 }
 
 impl Ready {
-    /// All pixels.
-    pub fn window(&self) -> Window {
-        let [x1, y1] = self.scene.image.size;
-        Window {
-            x0: 0,
-            y0: 0,
-            x1,
-            y1,
-        }
-    }
-
     /// The seed of one of its renders.
     pub fn seed(&self, replicate: u32) -> u64 {
         seed(self.base_seed, &self.name, replicate)
@@ -132,7 +121,7 @@ impl Ready {
     ) -> Rendered {
         self.plan.reseed(seed);
         let request = Request {
-            window: self.window(),
+            window: Window::whole(self.scene.image.size),
             samples,
             time,
             instructions: self.instructions,
@@ -150,7 +139,7 @@ impl Ready {
             }
             match key {
                 Key::Spp => image.spp.to_string(),
-                Key::Sampler => sampler_name(image.sampler).to_owned(),
+                Key::Sampler => image.sampler.name().to_owned(),
                 Key::Precision => match self.plan.choices.precision {
                     Precision::Single => "f32".to_owned(),
                     Precision::Double => "f64".to_owned(),
@@ -161,25 +150,5 @@ impl Ready {
                 Key::Scrambles => number(image.replicates),
             }
         })
-    }
-}
-
-/// A sampler's name in scene files.
-pub fn sampler_name(kind: SamplerKind) -> &'static str {
-    match kind {
-        SamplerKind::Independent => "independent",
-        SamplerKind::Stratified => "stratified",
-        SamplerKind::Sobol => "sobol",
-        SamplerKind::Center => "center",
-    }
-}
-
-/// Progress that nobody watches.
-#[derive(Debug, Clone, Copy)]
-pub struct Unwatched;
-
-impl Progress for Unwatched {
-    fn passed(&mut self, _: u32, _: u32, _: Duration, _: Option<f64>) -> bool {
-        true
     }
 }

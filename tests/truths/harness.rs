@@ -1,11 +1,10 @@
 //! Measuring numbers in pictures, and judging them.
 
 use std::path::Path;
-use std::time::Duration;
 
 use etalon::plan::Plan;
 use etalon::render::Instructions;
-use etalon::render::session::{Progress, Rendered, Request, render as run};
+use etalon::render::session::{Rendered, Request, Unwatched, render as run};
 use etalon::render::tile::Window;
 use etalon::scene::{Overrides, parse};
 use etalon::stats::{Estimate, family, student};
@@ -131,34 +130,19 @@ impl Measurement {
     }
 }
 
-struct Silent;
-
-impl Progress for Silent {
-    fn passed(&mut self, _: u32, _: u32, _: Duration, _: Option<f64>) -> bool {
-        true
-    }
-}
-
 /// Renders a scene file; no sample may be anything but a number.
 pub fn render(text: &Text, spp: u32, seed: u64, window: Option<Window>) -> Rendered {
     let file = text.file(spp, seed);
     let scene = parse("truth", &file, Path::new(""), &Overrides::default())
         .unwrap_or_else(|error| panic!("{error}\n{file}"));
     let plan = Plan::new(&scene, false).unwrap();
-    let [x1, y1] = scene.image.size;
-    let whole = Window {
-        x0: 0,
-        y0: 0,
-        x1,
-        y1,
-    };
     let request = Request {
-        window: window.unwrap_or(whole),
+        window: window.unwrap_or(Window::whole(scene.image.size)),
         samples: spp,
         time: None,
         instructions: Instructions::best(),
     };
-    let rendered = run(&plan, &request, &mut Silent);
+    let rendered = run(&plan, &request, &mut Unwatched);
     assert_eq!(rendered.not_a_number, 0, "{file}");
     rendered
 }

@@ -58,7 +58,7 @@ fn provenance(job: &Job, outcome: &Outcome<'_>, replicates: u32) -> Provenance {
         panel: scene.panel.clone(),
         seed: scene.image.seed,
         spp: rendered.samples.into(),
-        sampler: sampler(scene.image.sampler).to_owned(),
+        sampler: scene.image.sampler.name().to_owned(),
         replicates,
         precision: match job.plan.choices.precision {
             Precision::Single => "f32",
@@ -74,16 +74,6 @@ fn provenance(job: &Job, outcome: &Outcome<'_>, replicates: u32) -> Provenance {
         standard_error: error.is_finite().then_some(error),
         energy_cut: limited.then(|| rendered.cut_off().value),
         lights_left_out: job.plan.left_out.clone(),
-    }
-}
-
-/// The sampler's name in scene files.
-fn sampler(kind: SamplerKind) -> &'static str {
-    match kind {
-        SamplerKind::Independent => "independent",
-        SamplerKind::Stratified => "stratified",
-        SamplerKind::Sobol => "sobol",
-        SamplerKind::Center => "center",
     }
 }
 

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
 
 use crate::film::names;
 use crate::film::pixels::Estimate;
@@ -10,7 +9,7 @@ use crate::film::spectral::channel_name;
 use crate::math::instructions::Instructions;
 use crate::plan::{Plan, PlanError};
 use crate::render::bins::{BinError, BinGrid};
-use crate::render::session::{Progress, Rendered, Request, render, render_binned};
+use crate::render::session::{Rendered, Request, Unwatched, render, render_binned};
 use crate::render::target::{Singular, first_hits};
 use crate::render::tile::Window;
 
@@ -89,7 +88,7 @@ impl Case {
         bands: Option<Arc<BinGrid>>,
     ) -> Result<Self, Singular> {
         scene.image.replicates = Some(REPLICATES);
-        let hits = first_hits(&scene, whole(&scene))?;
+        let hits = first_hits(&scene, Window::whole(scene.image.size))?;
         let shown: Vec<Option<usize>> = hits
             .iter()
             .map(|hit| hit.as_ref().map(|h| scene.objects[h.object].value.material))
@@ -125,11 +124,7 @@ impl Case {
         let set = reference.text("overrides").unwrap_or("");
         let overrides = Overrides {
             panel: reference.text("panel").map(str::to_owned),
-            set: set
-                .split_whitespace()
-                .filter_map(|text| text.split_once('='))
-                .map(|(key, value)| (key.to_owned(), value.to_owned()))
-                .collect(),
+            set: Overrides::pairs(set),
             finder: None,
         };
         let scene = load(&root.join(file), &overrides)?;
@@ -157,14 +152,14 @@ impl Case {
     /// [`CaseError::NotANumber`].
     pub fn rendered(&self, plan: &Plan, spp: u32) -> Result<Side, CaseError> {
         let request = Request {
-            window: whole(&self.scene),
+            window: Window::whole(self.scene.image.size),
             samples: spp,
             time: None,
             instructions: Instructions::best(),
         };
         let rendered = match &self.bands {
-            Some(grid) => render_binned(plan, &request, grid, &mut Silent),
-            None => render(plan, &request, &mut Silent),
+            Some(grid) => render_binned(plan, &request, grid, &mut Unwatched),
+            None => render(plan, &request, &mut Unwatched),
         };
         if rendered.not_a_number > 0 {
             return Err(CaseError::NotANumber {
@@ -203,25 +198,6 @@ fn channel<const N: usize>(name: &str, estimates: &[Estimate<N>], index: usize) 
         name: name.to_owned(),
         values: estimates.iter().map(|e| e.mean[index]).collect(),
         variances: Some(estimates.iter().map(variance).collect()),
-    }
-}
-
-/// The whole picture.
-fn whole(scene: &Scene) -> Window {
-    let [x1, y1] = scene.image.size;
-    Window {
-        x0: 0,
-        y0: 0,
-        x1,
-        y1,
-    }
-}
-
-struct Silent;
-
-impl Progress for Silent {
-    fn passed(&mut self, _: u32, _: u32, _: Duration, _: Option<f64>) -> bool {
-        true
     }
 }
 

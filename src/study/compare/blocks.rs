@@ -2,10 +2,9 @@
 //! nearly normal.
 
 use super::{Channel, mean_over};
+use crate::render::blocks::{EDGE, members};
 use crate::stats::Estimate;
 
-/// Smallest edge of a block in pixels: 64 means of many samples each.
-const EDGE: usize = 8;
 /// Most blocks along an edge of the picture: more would share the level among so many that each
 /// sees less.
 const MOST: usize = 32;
@@ -37,23 +36,17 @@ pub fn blocks(
     height: usize,
 ) -> Option<Vec<Block>> {
     let edge = EDGE.max(width.max(height).div_ceil(MOST));
-    let mut blocks = Vec::new();
-    for y in (0..height).step_by(edge) {
-        for x in (0..width).step_by(edge) {
-            let rows = y..(y + edge).min(height);
-            let columns = x..(x + edge).min(width);
-            let pixels: Vec<usize> = rows
-                .flat_map(|row| columns.clone().map(move |column| row * width + column))
-                .collect();
-            let reference = mean_over(b.0, b.1, Some(&pixels))?;
-            let difference = mean_over(a.0, a.1, Some(&pixels))?.minus(&reference);
-            blocks.push(Block {
-                corner: [x, y],
-                edge,
-                difference,
-                reference: reference.value,
-            });
-        }
-    }
-    Some(blocks)
+    let block = |pixels: Vec<usize>| {
+        let first = *pixels.first()?;
+        let reference = mean_over(b.0, b.1, Some(&pixels))?;
+        let difference = mean_over(a.0, a.1, Some(&pixels))?.minus(&reference);
+        Some(Block {
+            corner: [first % width, first / width],
+            edge,
+            difference,
+            reference: reference.value,
+        })
+    };
+    let all = members(width, height, edge);
+    all.into_iter().map(block).collect()
 }

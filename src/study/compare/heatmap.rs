@@ -4,9 +4,8 @@ use std::path::Path;
 
 use super::Side;
 use crate::film::{Error, png};
+use crate::spectrum::observer::luminance;
 
-/// Luminance of linear RGB: Rec. ITU-R BT.709-6, item 3.2.
-const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 /// Part of the pixels that may lie beyond the ends of the scale.
 const BEYOND: f64 = 0.01;
 
@@ -18,7 +17,7 @@ const BEYOND: f64 = 0.01;
 /// # Errors
 /// [`Error`] where the file cannot be written.
 pub fn write_heatmap(path: &Path, a: &Side, b: &Side) -> Result<Option<f64>, Error> {
-    let (Some(x), Some(r)) = (luminance(a), luminance(b)) else {
+    let (Some(x), Some(r)) = (luminances(a), luminances(b)) else {
         return Ok(None);
     };
     let mean = r.iter().sum::<f64>() / r.len() as f64;
@@ -38,9 +37,8 @@ pub fn write_heatmap(path: &Path, a: &Side, b: &Side) -> Result<Option<f64>, Err
     Ok(Some(scale))
 }
 
-fn luminance(side: &Side) -> Option<Vec<f64>> {
-    let weighted = |[r, g, b]: &[f64; 3]| LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b;
-    Some(side.rgb()?.iter().map(weighted).collect())
+fn luminances(side: &Side) -> Option<Vec<f64>> {
+    Some(side.rgb()?.into_iter().map(luminance).collect())
 }
 
 /// White at 0, to dark red at 1 and dark blue at −1, through a full colour half way.

@@ -35,9 +35,6 @@ pub struct Channel {
     pub variances: Option<Vec<f64>>,
 }
 
-/// Layer of the variances that references keep in place of standard errors.
-const VARIANCE: &str = "variance";
-
 impl Side {
     /// Reads a picture.
     ///
@@ -154,7 +151,7 @@ fn channel(path: &Path, picture: &Picture, name: &str) -> Result<Channel, Compar
     }
     let layer = |layer: &str| picture.floats(&names::in_layer(layer, name)).map(wide);
     let squared = |errors: Vec<f64>| errors.into_iter().map(|e| e * e).collect::<Vec<_>>();
-    let variances = layer(VARIANCE).or_else(|| layer(names::STANDARD_ERROR).map(squared));
+    let variances = layer(names::VARIANCE).or_else(|| layer(names::STANDARD_ERROR).map(squared));
     // With a single replicate etalon writes NaN for every standard error.
     let variances = variances.filter(|v| !v.iter().all(|v| v.is_nan()));
     let sound = |v: &Vec<f64>| v.iter().all(|&v| v >= 0.0 && v.is_finite());

@@ -1,5 +1,7 @@
 //! The exposures under which a picture of high dynamic range is looked at.
 
+use crate::spectrum::observer::luminance;
+
 /// Numerator and denominator of the tone curve, from the highest power: K. Narkowicz's fit of ACES
 /// with exposure 0.6 taken in.
 const NUMERATOR: [f64; 3] = [0.36 * 2.51, 0.6 * 0.03, 0.0];
@@ -7,13 +9,11 @@ const DENOMINATOR: [f64; 3] = [0.36 * 2.43, 0.6 * 0.59, 0.14];
 /// What the tone curve makes of the brightest pixel at the first exposure and of the median one at
 /// the last.
 const TARGET: f64 = 0.85;
-/// Luminance of linear sRGB.
-const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 /// Exposures in stops, at least two.
 pub fn exposures(reference: &[[f64; 3]]) -> Vec<f64> {
-    let luminance = |p: &[f64; 3]| (0..3).map(|i| LUMINANCE[i] * p[i].max(0.0)).sum::<f64>();
-    let mut luminances: Vec<f64> = reference.iter().map(luminance).collect();
+    let positive = |p: &[f64; 3]| luminance(p.map(|x| x.max(0.0)));
+    let mut luminances: Vec<f64> = reference.iter().map(positive).collect();
     luminances.sort_by(f64::total_cmp);
     let middle = luminances.len().saturating_sub(1) / 2;
     let (Some(&largest), Some(&median)) = (luminances.last(), luminances.get(middle)) else {
