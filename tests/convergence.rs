@@ -9,7 +9,6 @@
 )]
 
 use std::path::Path;
-use std::sync::Arc;
 
 use etalon::render::bins::BinGrid;
 use etalon::scene::{Overrides, SamplerKind, load};
@@ -40,7 +39,7 @@ fn case(sampler: SamplerKind) -> Case {
     let mut scene = load(&path, &overrides).unwrap();
     scene.image.sampler = sampler;
     let bands = BinGrid::new(500.0, 600.0, 100.0).unwrap();
-    Case::new("cornell box", scene, Some(Arc::new(bands))).unwrap()
+    Case::new("cornell box", scene, Some(bands)).unwrap()
 }
 
 fn pictures(case: &Case, spp: u32) -> Vec<Side> {

@@ -18,6 +18,8 @@ use etalon::plan::extent::{about_camera, bounds};
 use etalon::scene::{self, Overrides, Scene};
 use etalon::shape::hierarchy::Item;
 use etalon::shape::lanes::LaneRay;
+use etalon::shape::lanes::balls::Balls;
+use etalon::spectrum::grid::WavelengthGrid;
 use glam::DVec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -130,7 +132,8 @@ impl Job for Questions<'_> {
     type Output = Vec<Answer>;
     fn run<L: Lanes>(&self, l: L) -> Vec<Answer> {
         let choices = choose(self.scene, false).unwrap();
-        let (mut model, _) = build::<L::Scalar>(self.scene, &choices).unwrap();
+        let (mut model, _) =
+            build::<L::Scalar>(self.scene, &choices, &WavelengthGrid::default()).unwrap();
         let mut items = items(self.scene);
         if self.way == Way::Broken {
             items.truncate(items.len() - items.len() / 8);
@@ -265,6 +268,106 @@ fn hierarchy_and_list_see_the_same() {
                 }
             }
             assert_ne!(ask(Way::Broken).swap_remove(0).1, list);
+        }
+    }
+}
+
+/// Rays from farther away than the bounds of the quick question hold: `aimed` through the inner
+/// nine tenths of a ball each, or past all of them by a diameter.
+struct FromAfar<'a> {
+    scene: &'a Scene,
+    aimed: bool,
+}
+
+const BALLS: u32 = 16;
+
+impl Job for FromAfar<'_> {
+    type Output = Vec<(u32, u32)>;
+    /// The ball aimed at, and the set of balls that the ray is said to come near.
+    fn run<L: Lanes>(&self, l: L) -> Self::Output {
+        let choices = choose(self.scene, false).unwrap();
+        let grid = WavelengthGrid::default();
+        let (model, _) = build::<L::Scalar>(self.scene, &choices, &grid).unwrap();
+        let objects: Vec<u32> = (0..BALLS).collect();
+        let balls = Balls::new(&objects, &model.shapes).unwrap();
+        let mut rng = Pcg64Mcg::seed_from_u64(11);
+        let mut answers = Vec::new();
+        for _ in 0..2000 {
+            let ball = rng.random_range(0..BALLS);
+            let (centre, radius) = self.ball(ball);
+            let offset = if self.aimed {
+                0.9 * radius * cubed(&mut rng) / 3f64.sqrt()
+            } else {
+                DVec3::new(0.0, 0.0, 2.0 + 2.0 * radius)
+            };
+            let mut from = cubed(&mut rng).normalize();
+            if !self.aimed {
+                from.z = 0.0;
+                from = from.normalize();
+            }
+            // Rounded numbers aim within 2 u of this distance, 2e-3 in single precision.
+            let far = 10f64.powf(rng.random_range(2.0..4.0));
+            let ray = [centre + offset + far * from, -from];
+            let vector = |which: usize| {
+                let v: DVec3 = ray[which];
+                let [x, y, z] = v.to_array().map(|x| l.real(x));
+                Vec3::new(x, y, z)
+            };
+            let ray = LaneRay::new(l, vector(0), vector(1));
+            let near = balls.near(l, &ray, [l.int(u32::MAX)], l.real(f64::INFINITY));
+            answers.push((ball, l.int_lane(near, 0)));
+        }
+        answers
+    }
+}
+
+impl FromAfar<'_> {
+    fn ball(&self, object: u32) -> (DVec3, f64) {
+        let map = about_camera(self.scene, &self.scene.objects[object as usize].value);
+        let rows = map.rows;
+        let centre = DVec3::new(rows[0][3], rows[1][3], rows[2][3]);
+        (centre, rows[0][0])
+    }
+}
+
+#[test]
+fn balls_are_found_from_afar() {
+    let mut text = String::from(&HEAD[..HEAD.find("[[object]]").unwrap()]);
+    let mut rng = Pcg64Mcg::seed_from_u64(9);
+    for _ in 0..BALLS {
+        let [x, y, z] = cubed(&mut rng).to_array();
+        let radius = rng.random_range(0.05..0.3);
+        text += &format!(
+            "[[object]]\nshape = {{ sphere = {{ radius = {radius} }} }}\nmaterial = \"white\"\n\
+             transform = [{{ translate = [{x}, {y}, {z}] }}]\n"
+        );
+    }
+    let scene = scene::parse("balls", &text, Path::new("."), &Overrides::default()).unwrap();
+    for precision in PRECISIONS {
+        for (name, answers) in on_each(
+            precision,
+            &FromAfar {
+                scene: &scene,
+                aimed: true,
+            },
+        ) {
+            for (ball, near) in answers {
+                assert!(
+                    near >> ball & 1 == 1,
+                    "{precision:?} {name}: ball {ball} of {near:b}"
+                );
+            }
+        }
+        // No more is asked than comes near: rays past all balls ask none.
+        for (name, answers) in on_each(
+            precision,
+            &FromAfar {
+                scene: &scene,
+                aimed: false,
+            },
+        ) {
+            let asked = answers.iter().filter(|(_, near)| *near != 0).count();
+            assert_eq!(asked, 0, "{precision:?} {name}");
         }
     }
 }

@@ -26,13 +26,6 @@ const MOST: u64 = 24_000_000;
 
 /// Bands that are not judged, because a finding explains how they differ: by reference and channel.
 ///
-/// The lamp and the paints of the Cornell box are known up to 700 nm and drop to zero there, inside of
-/// a cell of the wavelength grid, of which the share f = 0.459 is lit. Every spectrum is averaged over
-/// the cell on its own, so that n factors give fⁿ instead of f: of the 20 nm that are lit in this band,
-/// 0.24 % are lost after one reflection and 0.35 % after two. The blocks show it; Y loses a few
-/// millionths.
-const KNOWN: [(&str, &str); 1] = [("cornell_box", "S0.705,000000nm")];
-
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -120,9 +113,7 @@ fn every_reference_is_met() {
 }
 
 fn case(name: &str, path: &Path) -> (Case, Side) {
-    let mut reference = Side::read(path).unwrap();
-    let known = |channel: &str| KNOWN.contains(&(name, channel));
-    reference.channels.retain(|channel| !known(&channel.name));
+    let reference = Side::read(path).unwrap();
     let case = Case::of_reference(name, &reference, root()).unwrap_or_else(|e| panic!("{e}"));
     (case, reference)
 }

@@ -4,23 +4,33 @@
 use etalon::integrate::develop::Spectrometer;
 use etalon::integrate::pool::Rows;
 use etalon::math::lanes::Scalar;
-use etalon::spectrum::grid::{CELLS, Cumulative, SpectrumBank};
+use etalon::spectrum::cells::means;
+use etalon::spectrum::grid::{CELLS, SpectrumBank, WavelengthGrid};
+
+use etalon::spectrum::wavelengths::WavelengthPdf;
+use etalon::spectrum::{Spectrum, Table};
 
 use crate::truth_file::{list, number, truth};
 
 #[test]
 fn the_cumulative_density_is_the_published_one() {
     let truth = truth("wavelength_pdf");
-    let grid = Cumulative;
+    let grid = WavelengthGrid::default();
     let us = list(&truth["setup"]["u"]);
     for (u, nm) in us.iter().zip(list(&truth["exact"]["lam"])) {
-        let got = grid.wavelength(number(u));
-        assert!((got - number(nm)).abs() < 1e-9, "{got} {nm}");
+        let (u, nm) = (number(u), number(nm));
+        let got = WavelengthPdf::Visible.sample(u);
+        assert!((got - nm).abs() < 1e-9, "{got} {nm}");
+        // The chord of a cell is off by at most w²/8 of the second derivative −2 a tanh λ'² of
+        // λ(u), where λ' is w a cell, below 1.1 nm.
+        let got = grid.wavelength(u);
+        let slack = 1.1 * 1.1 * 2.0 * 0.0072 / 8.0;
+        assert!((got - nm).abs() < slack, "{got} {nm}");
     }
     // The density between two edges is A/cosh²: cells of equal probability.
     let a = number(&truth["exact"]["A"]);
     for cell in 0..CELLS {
-        let (low, high) = (grid.edge(cell), grid.edge(cell + 1));
+        let (low, high) = grid.cell(cell);
         let middle = 0.5 * (low + high);
         let density = |nm: f64| {
             let c = libm::cosh(0.0072 * (nm - 538.0));
@@ -32,7 +42,81 @@ fn the_cumulative_density_is_the_published_one() {
         assert!((probability - 1.0).abs() < 1e-8, "{cell}: {probability}");
         assert!(high > low);
     }
-    assert_eq!((grid.edge(0), grid.edge(CELLS)), (360.0, 830.0));
+    assert_eq!((grid.edges()[0], grid.edges()[CELLS]), (360.0, 830.0));
+}
+
+/// Known between two wavelengths, flat there, zero elsewhere.
+fn step(from: f64, to: f64) -> Spectrum {
+    Spectrum::Table(Table::new(vec![from, to], vec![1.0, 1.0]).unwrap())
+}
+
+/// ∫ of a product of spectra over the band, each averaged over cells on its own as paths have it.
+fn product(grid: &WavelengthGrid, spectra: &[Spectrum]) -> f64 {
+    let means: Vec<Vec<f64>> = spectra.iter().map(|s| means(s, grid.edges())).collect();
+    let of_cell = |cell: usize| {
+        let (low, high) = grid.cell(cell);
+        means.iter().map(|m| m[cell]).product::<f64>() * (high - low)
+    };
+    (0..CELLS).map(of_cell).sum()
+}
+
+#[test]
+fn where_spectra_jump_cells_end() {
+    let jumps = [401.3, 500.0, 500.001, 555.55, 700.0, 829.9];
+    let spectra: Vec<Spectrum> = jumps[1..].iter().map(|to| step(jumps[0], *to)).collect();
+    let grid = WavelengthGrid::new(&spectra);
+    assert!(grid.edges().windows(2).all(|e| e[0] < e[1]));
+    for jump in jumps {
+        assert!(grid.edges().contains(&jump), "{jump}");
+    }
+    let even = WavelengthGrid::default();
+    let moved = grid
+        .edges()
+        .iter()
+        .zip(even.edges())
+        .filter(|(a, b)| a != b);
+    assert_eq!(moved.count(), jumps.len());
+    // Light, and three walls: lit up to the jump, whatever the number of factors.
+    for (spectrum, to) in spectra.iter().zip(&jumps[1..]) {
+        let factors = vec![spectrum.clone(); 4];
+        let got = product(&grid, &factors);
+        assert!((got / (to - jumps[0]) - 1.0).abs() < 1e-12, "{to}: {got}");
+    }
+    // Without it a share of a cell is lost, 0.1 nm or so at 700 nm.
+    let lost = 298.7 - product(&WavelengthGrid::default(), &vec![step(401.3, 700.0); 4]);
+    assert!(lost > 0.01, "{lost}");
+}
+
+#[test]
+fn steep_flanks_are_jumps_and_flat_tables_are_none() {
+    let nm = vec![450.0, 450.002, 600.0, 600.003];
+    let band = Spectrum::Table(Table::new(nm, vec![0.0, 2.0, 2.0, 0.0]).unwrap());
+    let grid = WavelengthGrid::new([&band]);
+    for edge in [450.0, 450.002, 600.0, 600.003] {
+        assert!(grid.edges().contains(&edge), "{edge}");
+    }
+    // On the flanks f² has another integral than f: 1/3 of its square for 1/2.
+    let exact = 4.0 * (149.998 + 0.005 / 3.0);
+    let got = product(&grid, &[band.clone(), band]);
+    assert!(
+        (got - exact).abs() < 4.0 * 0.005 / 12.0 * 1.01,
+        "{got} {exact}"
+    );
+    let smooth = [
+        Spectrum::d65(1.0),
+        Spectrum::constant(0.5),
+        step(300.0, 900.0),
+    ];
+    assert_eq!(WavelengthGrid::new(&smooth), WavelengthGrid::default());
+}
+
+#[test]
+fn a_hundred_jumps_in_one_cell_leave_a_grid() {
+    let spectra: Vec<Spectrum> = (0..100)
+        .map(|i| step(500.0 + 1e-4 * f64::from(i), 640.0))
+        .collect();
+    let grid = WavelengthGrid::new(&spectra);
+    assert!(grid.edges().windows(2).all(|e| e[0] < e[1]));
 }
 
 #[test]
@@ -62,7 +146,7 @@ fn banks_hold_each_cell_once_for_every_set_size() {
 /// Mean, and relative variance over Y-normalised truth, of X, Y, Z of a flat spectrum over all
 /// rows, which are equally likely.
 fn flat<T: Scalar, const C: usize>() -> ([f64; 3], [f64; 3]) {
-    let spectrometer = Spectrometer::<T>::new(C);
+    let spectrometer = Spectrometer::<T>::new(&WavelengthGrid::default(), C);
     let rows = CELLS / C;
     let mut samples = Rows::<T, C>::new(rows);
     for row in 0..rows {

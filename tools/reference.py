@@ -37,7 +37,7 @@ from reference_file import Reference
 from scene_file import SceneError
 
 # More than the pictures of one reference are, one for each replicate and wavelength.
-SEEDS_EACH = 4096
+SEEDS_EACH = 8192
 
 
 def choose_variant(reference, arguments):
@@ -49,7 +49,7 @@ def choose_variant(reference, arguments):
 
 def first_seed(reference):
     """Of the seeds that only this reference has."""
-    return SEEDS_EACH * (1 + zlib.crc32(reference.name.encode()) % 2**18)
+    return SEEDS_EACH * (1 + zlib.crc32(reference.name.encode()) % 2**17)
 
 
 def make(reference, path, arguments):

@@ -3,7 +3,7 @@
 use super::pool::Rows;
 use crate::math::lanes::Scalar;
 use crate::spectrum::cells;
-use crate::spectrum::grid::{CELLS, Cumulative};
+use crate::spectrum::grid::{CELLS, WavelengthGrid};
 use crate::spectrum::observer;
 
 /// The observer on the wavelength grid: x̄, ȳ, z̄ of each cell times what a sample of the cell
@@ -17,11 +17,10 @@ pub struct Spectrometer<T> {
 
 impl<T: Scalar> Spectrometer<T> {
     /// The CIE 1931 observer for paths of `wavelengths` wavelengths.
-    pub fn new(wavelengths: usize) -> Self {
-        let cumulative = Cumulative;
+    pub fn new(grid: &WavelengthGrid, wavelengths: usize) -> Self {
         let by_cell: Vec<[f64; 3]> = (0..CELLS)
             .map(|cell| {
-                let (low, high) = (cumulative.edge(cell), cumulative.edge(cell + 1));
+                let (low, high) = grid.cell(cell);
                 let mean = cells::mean_of_interpolant(low, high, observer::xyz_bar);
                 let stands_for = CELLS as f64 * (high - low) / wavelengths as f64;
                 mean.map(|m| m * stands_for / observer::Y_INTEGRAL)

@@ -28,7 +28,7 @@ use crate::shape::resolve::Resolver;
 use crate::shape::{Placed, ShapeKind};
 use crate::spectrum::Spectrum;
 use crate::spectrum::cells;
-use crate::spectrum::grid::{CELLS, Cumulative, SpectrumBank};
+use crate::spectrum::grid::{SpectrumBank, WavelengthGrid};
 use crate::spectrum::ior::RefractiveIndex;
 use crate::spectrum::observer::spectrum_to_xyz;
 
@@ -47,8 +47,9 @@ const OTHER: usize = 5;
 pub fn build<T: Scalar>(
     scene: &Scene,
     choices: &Choices,
+    grid: &WavelengthGrid,
 ) -> Result<(Model<T>, Spectrometer<T>), PlanError> {
-    let mut builder = Builder::<T>::new(choices.wavelengths as usize, scene);
+    let mut builder = Builder::<T>::new(choices.wavelengths as usize, grid, scene);
     for (index, object) in scene.objects.iter().enumerate() {
         let placed = builder
             .place(scene, index)
@@ -112,7 +113,7 @@ pub fn build<T: Scalar>(
         spectra: builder.bank,
         resolver: builder.resolver,
     };
-    Ok((model, Spectrometer::new(choices.wavelengths as usize)))
+    Ok((model, Spectrometer::new(grid, choices.wavelengths as usize)))
 }
 
 /// Where an object stands: its map about the camera and the inverse.
@@ -121,10 +122,9 @@ struct Placement {
     inverse: Affine,
 }
 
-struct Builder<T> {
+struct Builder<'a, T> {
     bank: SpectrumBank<T>,
-    /// Edges of the wavelength grid's cells, nm.
-    edges: Vec<f64>,
+    grid: &'a WavelengthGrid,
     known: Vec<(Spectrum, u32)>,
     known_indices: Vec<(RefractiveIndex, [u32; 2])>,
     shapes: Vec<LaneShape<T>>,
@@ -137,16 +137,15 @@ struct Builder<T> {
     reach: f64,
 }
 
-impl<T: Scalar> Builder<T> {
-    fn new(wavelengths: usize, scene: &Scene) -> Self {
-        let cumulative = Cumulative;
+impl<'a, T: Scalar> Builder<'a, T> {
+    fn new(wavelengths: usize, grid: &'a WavelengthGrid, scene: &Scene) -> Self {
         let placed = |o: &Named<Object>| {
             super::extent::bounds(&o.value.shape, &about_camera(scene, &o.value))
         };
         let bounds = scene.objects.iter().filter_map(placed);
         Self {
             bank: SpectrumBank::new(wavelengths),
-            edges: (0..=CELLS).map(|cell| cumulative.edge(cell)).collect(),
+            grid,
             known: Vec::new(),
             known_indices: Vec::new(),
             shapes: Vec::new(),
@@ -165,7 +164,7 @@ impl<T: Scalar> Builder<T> {
         if let Some((_, start)) = self.known.iter().find(|(s, _)| s == spectrum) {
             return *start;
         }
-        let start = self.bank.push(&cells::means(spectrum, &self.edges));
+        let start = self.bank.push(&cells::means(spectrum, self.grid.edges()));
         self.known.push((spectrum.clone(), start));
         start
     }
@@ -178,11 +177,12 @@ impl<T: Scalar> Builder<T> {
         }
         let nodes: Vec<(f64, f64)> = match index {
             RefractiveIndex::Complex { .. } => self
-                .edges
+                .grid
+                .edges()
                 .windows(2)
                 .map(|cell| index.n_k((cell[0] + cell[1]) / 2.0))
                 .collect(),
-            _ => self.edges.iter().map(|&nm| index.n_k(nm)).collect(),
+            _ => self.grid.edges().iter().map(|&nm| index.n_k(nm)).collect(),
         };
         let n: Vec<f64> = nodes.iter().map(|nk| nk.0).collect();
         let k: Vec<f64> = nodes.iter().map(|nk| nk.1).collect();

@@ -14,6 +14,7 @@ pub mod occluders;
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::model::Model;
 use crate::scene::Scene;
+use crate::spectrum::grid::WavelengthGrid;
 use choose::Choices;
 
 /// A scene ready to render.
@@ -23,6 +24,8 @@ pub struct Plan {
     pub choices: Choices,
     /// The tables, in the chosen precision.
     pub tables: Tables,
+    /// The cells of wavelength that all spectra are averaged over.
+    pub grid: WavelengthGrid,
     /// Names of lights that unidirectional paths cannot carry everywhere, with the reason.
     pub left_out: Vec<String>,
 }
@@ -62,13 +65,19 @@ impl Plan {
     /// [`PlanError`] where the scene cannot be carried out.
     pub fn new(scene: &Scene, full: bool) -> Result<Self, PlanError> {
         let choices = choose::choose(scene, full)?;
+        let grid = WavelengthGrid::new(needs::spectra(scene));
         let tables = match choices.precision {
-            choose::Precision::Single => Tables::Single(Box::new(build::build(scene, &choices)?)),
-            choose::Precision::Double => Tables::Double(Box::new(build::build(scene, &choices)?)),
+            choose::Precision::Single => {
+                Tables::Single(Box::new(build::build(scene, &choices, &grid)?))
+            }
+            choose::Precision::Double => {
+                Tables::Double(Box::new(build::build(scene, &choices, &grid)?))
+            }
         };
         Ok(Self {
             choices,
             tables,
+            grid,
             left_out: needs::left_out(scene),
         })
     }

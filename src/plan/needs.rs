@@ -2,6 +2,7 @@
 
 use crate::integrate::model::Needs;
 use crate::scene::{Light, Material, Scene, Shape, Surface};
+use crate::spectrum::Spectrum;
 
 /// Materials that some object wears.
 fn worn(scene: &Scene) -> impl Iterator<Item = &Material> {
@@ -29,6 +30,24 @@ pub fn needs(scene: &Scene) -> Needs {
             .any(|o| matches!(o.value.shape, Shape::Implicit(_))),
         checker: surface(|s| matches!(s, Surface::Checkerboard { .. })),
     }
+}
+
+/// The spectra that light takes on its way, other than refractive indices.
+pub fn spectra(scene: &Scene) -> impl Iterator<Item = &Spectrum> {
+    let surfaces = worn(scene).flat_map(|material| match &material.surface {
+        Surface::Diffuse(albedo) | Surface::IdealMirror(albedo) => std::slice::from_ref(albedo),
+        Surface::Checkerboard { albedo, .. } => albedo.as_slice(),
+        Surface::Black | Surface::Conductor(_) | Surface::Glass(_) => &[],
+    });
+    let emissions = worn(scene).filter_map(|material| material.emission.as_ref());
+    let lights = scene.lights.iter().map(|light| match light {
+        Light::Point { intensity, .. } => intensity,
+        Light::Directional { irradiance, .. } => irradiance,
+    });
+    surfaces
+        .chain(emissions.map(|emission| &emission.radiance))
+        .chain(lights)
+        .chain(&scene.environment)
 }
 
 /// Everything switched on, whether it can happen or not.

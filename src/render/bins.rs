@@ -12,12 +12,20 @@ use std::sync::Arc;
 use crate::film::pixels::Estimate;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Replicates;
-use crate::spectrum::grid::{CELLS, Cumulative, LONGEST, SHORTEST};
+use crate::spectrum::grid::{CELLS, LONGEST, SHORTEST, WavelengthGrid};
 
 /// Neighbouring bins of equal width.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BinGrid {
     centres: Vec<f64>,
+    /// nm.
+    width: f64,
+}
+
+/// How the bins share the cells of a wavelength grid.
+#[derive(Debug)]
+pub struct Shares {
+    bins: usize,
     /// By cell, where its bins are in `shares`; one more than cells.
     starts: Vec<u32>,
     /// Bin, and (number of cells × shared width)/(bin width): what the cell's radiance adds to
@@ -62,23 +70,9 @@ impl BinGrid {
         if let Some(&centre) = centres.iter().find(|&&c| !inside(c)) {
             return Err(BinError::Outside { centre });
         }
-        let cumulative = Cumulative;
-        let mut starts = vec![0];
-        let mut shares = Vec::new();
-        for cell in 0..CELLS {
-            let (low, high) = (cumulative.edge(cell), cumulative.edge(cell + 1));
-            for (bin, centre) in centres.iter().enumerate() {
-                let shared = high.min(centre + half) - low.max(centre - half);
-                if shared > 0.0 {
-                    shares.push((bin as u32, CELLS as f64 * shared / step));
-                }
-            }
-            starts.push(shares.len() as u32);
-        }
         Ok(Self {
             centres,
-            starts,
-            shares,
+            width: step,
         })
     }
 
@@ -87,7 +81,31 @@ impl BinGrid {
         &self.centres
     }
 
-    fn shares(&self, cell: usize) -> &[(u32, f64)] {
+    /// How they share the cells of a grid.
+    pub fn shares(&self, grid: &WavelengthGrid) -> Shares {
+        let half = self.width / 2.0;
+        let mut starts = vec![0];
+        let mut shares = Vec::new();
+        for cell in 0..CELLS {
+            let (low, high) = grid.cell(cell);
+            for (bin, centre) in self.centres.iter().enumerate() {
+                let shared = high.min(centre + half) - low.max(centre - half);
+                if shared > 0.0 {
+                    shares.push((bin as u32, CELLS as f64 * shared / self.width));
+                }
+            }
+            starts.push(shares.len() as u32);
+        }
+        Shares {
+            bins: self.centres.len(),
+            starts,
+            shares,
+        }
+    }
+}
+
+impl Shares {
+    fn of(&self, cell: usize) -> &[(u32, f64)] {
         &self.shares[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 }
@@ -95,7 +113,7 @@ impl BinGrid {
 /// Sums by pixel, replicate and bin.
 #[derive(Debug, Clone)]
 pub struct Bins {
-    grid: Arc<BinGrid>,
+    shares: Arc<Shares>,
     replicates: Replicates,
     slots: usize,
     sums: Vec<[f64; 1]>,
@@ -103,11 +121,11 @@ pub struct Bins {
 
 impl Bins {
     /// Zero sums for this many pixels of at most `samples` samples each.
-    pub fn new(pixels: usize, grid: Arc<BinGrid>, replicates: Replicates, samples: u32) -> Self {
+    pub fn new(pixels: usize, shares: Arc<Shares>, replicates: Replicates, samples: u32) -> Self {
         let slots = replicates.count(samples) as usize;
-        let sums = vec![[0.0]; pixels * slots * grid.centres.len()];
+        let sums = vec![[0.0]; pixels * slots * shares.bins];
         Self {
-            grid,
+            shares,
             replicates,
             slots,
             sums,
@@ -128,13 +146,13 @@ impl Bins {
         radiance: &[T; C],
         row: u32,
     ) {
-        let count = self.grid.centres.len();
+        let count = self.shares.bins;
         let (replicate, _) = self.replicates.place(sample);
         let place = pixel * self.slots + replicate as usize;
         let sums = &mut self.sums[place * count..][..count];
         for (i, radiance) in radiance.iter().enumerate() {
             let radiance = radiance.to_f64() / C as f64;
-            for (bin, share) in self.grid.shares(i * (CELLS / C) + row as usize) {
+            for (bin, share) in self.shares.of(i * (CELLS / C) + row as usize) {
                 sums[*bin as usize][0] += radiance * share;
             }
         }
@@ -142,7 +160,7 @@ impl Bins {
 
     /// Radiance of a pixel in a bin after `samples` samples, W·m⁻²·sr⁻¹·nm⁻¹.
     pub fn estimate(&self, pixel: usize, bin: usize, samples: u32) -> Estimate<1> {
-        let count = self.grid.centres.len();
+        let count = self.shares.bins;
         let sums = &self.sums[pixel * self.slots * count..][..self.slots * count];
         let of_bin = sums[bin..].iter().step_by(count);
         Estimate::new(self.replicates, samples, of_bin, |radiance| radiance)

@@ -8,20 +8,21 @@ use crate::integrate::replay::Replayed;
 use crate::math::instructions::Instructions;
 use crate::math::lanes::Scalar;
 use crate::plan::{Plan, Tables};
-use crate::spectrum::grid::{CELLS, Cumulative};
+use crate::spectrum::grid::{CELLS, WavelengthGrid};
 
 /// Takes one sample and writes its path down; the bits are those of a render with the same plan.
 pub fn replay(plan: &Plan, level: Instructions, request: Request) -> Replayed {
     match (&plan.tables, plan.choices.wavelengths) {
-        (Tables::Single(scene), 4) => one::<f32, 4>(scene, level, request),
-        (Tables::Single(scene), _) => one::<f32, 8>(scene, level, request),
-        (Tables::Double(scene), 4) => one::<f64, 4>(scene, level, request),
-        (Tables::Double(scene), _) => one::<f64, 8>(scene, level, request),
+        (Tables::Single(scene), 4) => one::<f32, 4>(scene, &plan.grid, level, request),
+        (Tables::Single(scene), _) => one::<f32, 8>(scene, &plan.grid, level, request),
+        (Tables::Double(scene), 4) => one::<f64, 4>(scene, &plan.grid, level, request),
+        (Tables::Double(scene), _) => one::<f64, 8>(scene, &plan.grid, level, request),
     }
 }
 
 fn one<T: Runs, const C: usize>(
     scene: &(Model<T>, Spectrometer<T>),
+    grid: &WavelengthGrid,
     level: Instructions,
     request: Request,
 ) -> Replayed {
@@ -31,10 +32,9 @@ fn one<T: Runs, const C: usize>(
     requests.push(request.x, request.y, request.sample, request.sample + 1);
     T::chunk(level, scene, &requests, &mut workspace);
     let rows = &workspace.rows;
-    let cumulative = Cumulative;
     let wavelengths = (0..C).map(|j| {
         let cell = (j * (CELLS / C)) as f64 + f64::from(rows.row[0]) + rows.fraction[0].to_f64();
-        cumulative.wavelength(cell / CELLS as f64)
+        grid.wavelength(cell / CELLS as f64)
     });
     Replayed {
         wavelengths: wavelengths.collect(),

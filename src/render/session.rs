@@ -84,13 +84,14 @@ pub fn render(plan: &Plan, request: &Request, progress: &mut dyn Progress) -> Re
 pub fn render_binned(
     plan: &Plan,
     request: &Request,
-    grid: &Arc<BinGrid>,
+    grid: &BinGrid,
     progress: &mut dyn Progress,
 ) -> Rendered {
+    let shares = Arc::new(grid.shares(&plan.grid));
     let tiles = request.window.tiles().into_iter().map(|window| Tile {
         bins: Some(Bins::new(
             window.pixels(),
-            Arc::clone(grid),
+            Arc::clone(&shares),
             plan.choices.replicates,
             request.samples,
         )),

@@ -197,6 +197,18 @@ impl Spectrum {
         }
     }
 
+    /// Intervals over which the spectrum goes linearly from one value to another, nm: a single
+    /// wavelength where it jumps. Smooth spectra have none.
+    pub(crate) fn rises(&self) -> Vec<[f64; 2]> {
+        match self {
+            Self::Table(table) => table.rises(),
+            Self::Constant(_)
+            | Self::Blackbody { .. }
+            | Self::Sigmoid { .. }
+            | Self::SigmoidD65 { .. } => Vec::new(),
+        }
+    }
+
     /// Wavelengths strictly between `low` and `high` where the spectrum has a kink or a jump.
     fn kinks_between(&self, low: f64, high: f64) -> &[f64] {
         match self {

@@ -150,6 +150,16 @@ impl Table {
             })
     }
 
+    /// Neighbouring samples with different values, and the ends where the value drops to zero.
+    pub(crate) fn rises(&self) -> Vec<[f64; 2]> {
+        let ends = [0, self.nm.len() - 1].into_iter();
+        let ends = ends.filter(|&i| self.values[i] != 0.0);
+        let inner = (1..self.nm.len()).filter(|&i| self.values[i] != self.values[i - 1]);
+        ends.map(|i| [self.nm[i]; 2])
+            .chain(inner.map(|i| [self.nm[i - 1], self.nm[i]]))
+            .collect()
+    }
+
     /// The wavelengths of the samples strictly between `low` and `high`.
     pub(crate) fn nodes_between(&self, low: f64, high: f64) -> &[f64] {
         let begin = self.nm.partition_point(|&nm| nm <= low);

@@ -12,7 +12,7 @@ use etalon::material::fresnel;
 use etalon::math::lanes::Scalar;
 use etalon::plan::{Plan, Tables};
 use etalon::scene::{Scene, Surface};
-use etalon::spectrum::grid::{CELLS, Cumulative, LONGEST, SHORTEST};
+use etalon::spectrum::grid::{CELLS, LONGEST, SHORTEST, WavelengthGrid};
 
 /// What can be wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -93,18 +93,22 @@ fn planted<T: Scalar>(mistake: Mistake, scene: &Scene, model: &mut Model<T>) -> 
 fn scaled<T: Scalar>(model: &mut Model<T>, start: u32, factor: impl Fn(f64) -> f64) -> u32 {
     let rows = CELLS / WAVELENGTHS;
     let table = model.spectra.rows::<WAVELENGTHS>();
-    let values: Vec<f64> = (0..CELLS)
-        .map(|cell| {
+    let values: Vec<f64> = middles()
+        .into_iter()
+        .enumerate()
+        .map(|(cell, nm)| {
             let value = table[start as usize + cell % rows][cell / rows].to_f64();
-            value * factor(middle(cell))
+            value * factor(nm)
         })
         .collect();
     model.spectra.push(&values)
 }
 
-/// Middle of a cell of the wavelength grid, nm.
-fn middle(cell: usize) -> f64 {
-    (Cumulative.edge(cell) + Cumulative.edge(cell + 1)) / 2.0
+/// Middles of the cells of the wavelength grid, nm. Scenes here have no spectra that jump.
+fn middles() -> Vec<f64> {
+    let grid = WavelengthGrid::default();
+    let cells = (0..CELLS).map(|cell| grid.cell(cell));
+    cells.map(|(low, high)| (low + high) / 2.0).collect()
 }
 
 /// The loop reads appearances by part.
@@ -155,9 +159,10 @@ fn polarisation<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
         let Surface::Conductor(index) = &material.surface else {
             continue;
         };
-        let values: Vec<f64> = (0..CELLS)
-            .map(|cell| {
-                let (n, k) = index.n_k(middle(cell));
+        let values: Vec<f64> = middles()
+            .into_iter()
+            .map(|nm| {
+                let (n, k) = index.n_k(nm);
                 let mean = fresnel::conductor(cosine, n, k);
                 let s = perpendicular(cosine, n, k);
                 // s and p average to the mean; with s twice, (2 s + p)/3.

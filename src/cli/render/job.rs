@@ -2,7 +2,6 @@
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use etalon::plan::Plan;
 use etalon::render::bins::BinGrid;
@@ -26,7 +25,7 @@ pub struct Job {
     /// The pixels wanted.
     pub window: Window,
     /// The spectral bins wanted.
-    pub bins: Option<Arc<BinGrid>>,
+    pub bins: Option<BinGrid>,
     /// The OpenEXR file.
     pub output: PathBuf,
     /// The preview beside it; none beside a device or pipe.

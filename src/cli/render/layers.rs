@@ -3,8 +3,6 @@
 //! Depth, normal, object and material are those of the first surface on the ray through the
 //! pixel's centre, decided exactly; nothing is averaged over the pixel.
 
-use std::sync::Arc;
-
 use etalon::film::pixels::Estimate;
 use etalon::film::spectral::Bin;
 use etalon::film::{Channel, Picture, names};
@@ -26,13 +24,13 @@ const USUAL_BINS: SpectralRange = SpectralRange {
 };
 
 /// The spectral bins asked for; where several are, the last counts.
-pub fn bins(layers: &[Layer]) -> Result<Option<Arc<BinGrid>>, CommandError> {
+pub fn bins(layers: &[Layer]) -> Result<Option<BinGrid>, CommandError> {
     let asked = layers.iter().rev().find_map(|layer| match layer {
         Layer::Spectral(range) => Some(range.unwrap_or(USUAL_BINS)),
         _ => None,
     });
     asked
-        .map(|range| Ok(Arc::new(BinGrid::new(range.from, range.to, range.step)?)))
+        .map(|range| Ok(BinGrid::new(range.from, range.to, range.step)?))
         .transpose()
 }
 

@@ -1,7 +1,6 @@
 //! A scene, and what is asked about its pictures.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use crate::film::names;
 use crate::film::pixels::Estimate;
@@ -30,7 +29,7 @@ pub struct Case {
     /// The scene.
     pub scene: Scene,
     /// Bands of wavelengths to be judged besides R, G, B.
-    pub bands: Option<Arc<BinGrid>>,
+    pub bands: Option<BinGrid>,
     /// Parts of the picture.
     pub regions: Vec<Region>,
 }
@@ -82,11 +81,7 @@ impl Case {
     ///
     /// # Errors
     /// [`Singular`] where the first hits of its pixels cannot be had.
-    pub fn new(
-        name: &str,
-        mut scene: Scene,
-        bands: Option<Arc<BinGrid>>,
-    ) -> Result<Self, Singular> {
+    pub fn new(name: &str, mut scene: Scene, bands: Option<BinGrid>) -> Result<Self, Singular> {
         scene.image.replicates = Some(REPLICATES);
         let hits = first_hits(&scene, Window::whole(scene.image.size))?;
         let shown: Vec<Option<usize>> = hits
@@ -203,7 +198,7 @@ fn channel<const N: usize>(name: &str, estimates: &[Estimate<N>], index: usize) 
 
 /// The bands of a reference, whose attribute lists the ends of each in nm; they must be neighbours
 /// of equal width.
-fn bands(reference: &Side) -> Result<Option<Arc<BinGrid>>, String> {
+fn bands(reference: &Side) -> Result<Option<BinGrid>, String> {
     let Some(text) = reference.text("bands") else {
         return Ok(None);
     };
@@ -220,5 +215,5 @@ fn bands(reference: &Side) -> Result<Option<Arc<BinGrid>>, String> {
     }
     let grid = BinGrid::new((low + high) / 2.0, (last_low + last_high) / 2.0, width);
     let grid = grid.map_err(|error: BinError| error.to_string())?;
-    Ok(Some(Arc::new(grid)))
+    Ok(Some(grid))
 }
