@@ -2,7 +2,7 @@
 //! place of the reference and both sides drawn afresh each time.
 
 use etalon::plan::Plan;
-use etalon::study::agreement::{Case, Levels, Planned, decide, plan};
+use etalon::study::agreement::{Case, Levels, Paths, Planned, decide, plan};
 
 use super::planted::{Mistake, plant};
 use super::scenes::{SCENES, scene};
@@ -12,7 +12,14 @@ pub const LEVEL: f64 = 1e-3;
 /// Camera paths per pixel of the pilots.
 const PILOT: u32 = 64;
 /// Camera paths of a case in the first round at most.
-const MOST: u64 = 1 << 18;
+const MOST: Paths = Paths {
+    to_show: 1 << 18,
+    to_sharpen: 0,
+};
+const NO_MORE: Paths = Paths {
+    to_show: 0,
+    to_sharpen: 0,
+};
 
 /// All cases, planned once.
 pub struct Suite {
@@ -48,7 +55,13 @@ impl Suite {
             let planned = plan(&case, (&pilot, PILOT), &pilot, MOST, levels.question);
             // The reference has the samples of the picture, so its variance is the same.
             let pilot = case.render(planned.spp, 2).expect("rendered");
-            let planned = plan(&case, (&pilot, planned.spp), &pilot, 0, levels.question);
+            let planned = plan(
+                &case,
+                (&pilot, planned.spp),
+                &pilot,
+                NO_MORE,
+                levels.question,
+            );
             (case, planned)
         });
         Self {

@@ -14,7 +14,7 @@ mod planned;
 
 pub use case::{Case, CaseError, Region};
 pub use outcome::{Answer, Levels, Outcome, decide};
-pub use planned::{DELTA, Planned, Question, plan};
+pub use planned::{DELTA, Paths, Planned, Question, SHARP, plan};
 
 /// Times a question may be asked.
 pub const ROUNDS: u32 = 3;

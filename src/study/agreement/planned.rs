@@ -8,9 +8,22 @@ use crate::study::compare::{Channel, Side, mean_over};
 
 /// Tolerance of image means, relative, where samples and reference can show that much.
 pub const DELTA: f64 = 1e-3;
+/// Largest standard error of the difference of image means to be had, relative.
+pub const SHARP: f64 = 5e-4;
+/// Of what a pilot promises of errors: rare paths may have been missed by it.
+const TRUSTED: f64 = 0.8;
 /// Probability with which all of a case's questions are answered in the first round, if everything
 /// is right and their tolerances can be chosen.
 const FIRST_ROUND: f64 = 0.99;
+
+/// Camera paths of a first round, at most.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Paths {
+    /// To show that image means are within [`DELTA`].
+    pub to_show: u64,
+    /// To bring the standard error of their differences down to [`SHARP`].
+    pub to_sharpen: u64,
+}
 
 /// A number of the picture: the mean of a channel over a region, or all pixels.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,28 +71,32 @@ impl Question {
 }
 
 /// Plans a case from a pilot of `pilot_spp` paths per pixel, which is not used again. At most
-/// `most` camera paths are spent on the first round, fewer where those show all image means of R, G, B
-/// to be within [`DELTA`]; every other tolerance is what these samples allow at `level`.
+/// as many camera paths are spent on the first round as `most` says, fewer where those show all image
+/// means of R, G, B to be within [`DELTA`] or are as sharp as is wanted; every other tolerance is what these samples allow at `level`.
 #[must_use]
 pub fn plan(
     case: &Case,
     (pilot, pilot_spp): (&Side, u32),
     reference: &Side,
-    most: u64,
+    most: Paths,
     level: f64,
 ) -> Planned {
     let questions = questions(case, pilot, reference);
     let missed = (1.0 - FIRST_ROUND) / questions.len() as f64;
     // The squared error of a mean falls at least as 1/N.
-    let error = |question: &Question, spp: u32, missed: f64| {
+    let standard_error = |question: &Question, spp: u32| {
         let (difference, mean) = question.ask(case, pilot, reference)?;
         let (twice, _) = question.ask(case, reference, reference)?;
         let fixed = twice.standard_error * twice.standard_error / 2.0;
         let own = difference.standard_error * difference.standard_error - fixed;
         let own = own.max(0.0) * f64::from(pilot_spp) / f64::from(spp);
-        let needed = student::critical(level / f64::from(ROUNDS), difference.freedom)
-            + student::critical(missed, difference.freedom);
-        Some(needed * (own + fixed).sqrt() / mean)
+        Some(((own + fixed).sqrt() / mean, difference.freedom))
+    };
+    let error = |question: &Question, spp: u32, missed: f64| {
+        let (error, freedom) = standard_error(question, spp)?;
+        let needed = student::critical(level / f64::from(ROUNDS), freedom)
+            + student::critical(missed, freedom);
+        Some(needed * error)
     };
     // A question whose tolerance is given may need a second round with the usual probability.
     let shown = |question: &Question, spp: u32| {
@@ -88,9 +105,17 @@ pub fn plan(
     let pixels = reference.width as u64 * reference.height as u64;
     let mut spp = pilot_spp;
     let is_mean = |q: &&Question| q.region.is_none() && names::RGB.contains(&q.channel.as_str());
-    while 2 * u64::from(spp) * pixels <= most
-        && !questions.iter().filter(is_mean).all(|q| shown(q, spp))
-    {
+    let sharp = |question: &Question, spp: u32| {
+        standard_error(question, spp).is_none_or(|(error, _)| error <= TRUSTED * SHARP)
+    };
+    loop {
+        let next = 2 * u64::from(spp) * pixels;
+        let means = || questions.iter().filter(is_mean);
+        let to_show = next <= most.to_show && !means().all(|q| shown(q, spp));
+        let to_sharpen = next <= most.to_sharpen && !means().all(|q| sharp(q, spp));
+        if !(to_show || to_sharpen) {
+            break;
+        }
         spp *= 2;
     }
     let judged = questions.into_iter().filter_map(|question| {
