@@ -4,6 +4,7 @@ mod cli;
 mod cli_render;
 mod compare;
 mod convergence;
+mod equilibrium;
 mod failure_maps;
 mod film_files;
 mod fresnel;

@@ -239,10 +239,14 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             let light = &model.lights[k as usize];
             let own = light.shape.sample(l, point, numbers);
             let pdf = own.pdf * l.splat(light.probability);
+            let mut valid = here & own.valid;
+            if light.shape.is_flat() {
+                valid = valid & !leaving.object.same(l.int(light.object));
+            }
             towards.direction = Vec3::select(l, here, own.direction, towards.direction);
             towards.distance = l.select(here, own.distance, towards.distance);
             towards.pdf = l.select(here, pdf, towards.pdf);
-            towards.valid = towards.valid | (here & own.valid);
+            towards.valid = towards.valid | valid;
             spectrum = l.select_int(here, l.int(light.spectrum), spectrum);
             except = l.select_int(here, l.int(light.object), except);
             if !light.shape.has_extent() {

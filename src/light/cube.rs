@@ -10,6 +10,8 @@ use crate::math::vec3::Vec3;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CubeLight<T> {
     faces: [Face<T>; 6],
+    /// How far from a face's plane a receiver may be and still count as on it.
+    margin: T,
     emits: [bool; 2],
 }
 
@@ -24,6 +26,10 @@ struct Face<T> {
 impl<T: Scalar> CubeLight<T> {
     /// From the centre, the three half-edges and the unit outward normals of the faces towards
     /// them.
+    ///
+    /// The inner walls of a cube that emits inward receive its light; points *on* them must count as
+    /// inside. With unit roundoff u they are off by at most 4u (|c| + 4 (|a| + |b| + |c|)), as those of
+    /// a sphere with the sum of the half-edges as radius; doubled for the height's own rounding.
     pub fn new(centre: DVec3, half: [DVec3; 3], normals: [DVec3; 3], emits: [bool; 2]) -> Self {
         let face = |i: usize| {
             let axis = i / 2;
@@ -36,28 +42,37 @@ impl<T: Scalar> CubeLight<T> {
                 area: T::from_f64(4.0 * a.cross(b).length()),
             }
         };
+        let extent: f64 = half.iter().map(|h| h.length()).sum();
+        let margin = if emits[1] {
+            8.0 * T::ROUNDOFF * (centre.length() + 4.0 * extent)
+        } else {
+            0.0
+        };
         Self {
+            margin: T::from_f64(margin),
             faces: [face(0), face(1), face(2), face(3), face(4), face(5)],
             emits,
         }
     }
 
     /// Areas of the faces that a point could be lit by: from outside those that face it, from
-    /// inside all, if that side emits; with their sum.
+    /// inside all but the one that it lies on, if that side emits; with their sum.
     #[inline(always)]
     fn visible<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> ([L::Real; 6], L::Real) {
         let zero = l.real(0.0);
-        let mut facing = [l.mask(false); 6];
+        let margin = l.splat(self.margin);
+        let mut heights = [zero; 6];
         let mut outside = l.mask(false);
-        for (facing, face) in facing.iter_mut().zip(&self.faces) {
-            let height = (p - vector(l, &face.centre)).dot(vector(l, &face.normal));
-            *facing = height.gt(zero);
-            outside = outside | *facing;
+        for (height, face) in heights.iter_mut().zip(&self.faces) {
+            *height = (p - vector(l, &face.centre)).dot(vector(l, &face.normal));
+            outside = outside | height.gt(margin);
         }
         let mut areas = [zero; 6];
         let mut total = zero;
-        for ((area, face), facing) in areas.iter_mut().zip(&self.faces).zip(facing) {
-            let lit = (facing & l.mask(self.emits[0])) | (!outside & l.mask(self.emits[1]));
+        for ((area, face), height) in areas.iter_mut().zip(&self.faces).zip(heights) {
+            let front = outside & height.gt(zero) & l.mask(self.emits[0]);
+            let back = !outside & height.lt(-margin) & l.mask(self.emits[1]);
+            let lit = front | back;
             *area = l.select(lit, l.splat(face.area), zero);
             total = total + *area;
         }
@@ -106,7 +121,7 @@ impl<T: Scalar> CubeLight<T> {
         )
     }
 
-    /// Density of [`Self::sample`].
+    /// Density of [`Self::sample`]; 0 for faces that it leaves to scattered rays.
     #[inline(never)]
     pub fn pdf<L: Lanes<Scalar = T>>(
         &self,
@@ -118,11 +133,12 @@ impl<T: Scalar> CubeLight<T> {
         l.vectorize(
             #[inline(always)]
             || {
-                let (_, total) = self.visible(l, p);
+                let (areas, total) = self.visible(l, p);
                 // The face that was met is the one whose normal is the hit's, up to rounding.
                 let zero = l.real(0.0);
                 let (mut likeness, mut height, mut cosine) = (-l.real(2.0), zero, zero);
-                for face in &self.faces {
+                let mut lit = zero;
+                for (face, area) in self.faces.iter().zip(areas) {
                     let face_normal = vector(l, &face.normal);
                     let like = face_normal.dot(normal);
                     let here = like.gt(likeness);
@@ -130,8 +146,10 @@ impl<T: Scalar> CubeLight<T> {
                     likeness = l.select(here, like, likeness);
                     height = l.select(here, to_face.dot(face_normal), height);
                     cosine = l.select(here, direction.dot(face_normal), cosine);
+                    lit = l.select(here, area, lit);
                 }
-                area_pdf(cosine, height, l.real(1.0) / total)
+                let pdf = area_pdf(cosine, height, l.real(1.0) / total);
+                l.select(lit.gt(zero), pdf, zero)
             },
         )
     }

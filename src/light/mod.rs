@@ -74,6 +74,15 @@ impl<T: Scalar> LightShape<T> {
         !matches!(self, Self::Point(_) | Self::Directional(_))
     }
 
+    /// Whether it cannot light itself, whatever rounding makes of a point on it: by a hair behind
+    /// the plane, a rectangle would fill half of all directions.
+    pub fn is_flat(&self) -> bool {
+        matches!(
+            self,
+            Self::Rectangle(_) | Self::Disk(_) | Self::Parallelogram(_)
+        )
+    }
+
     /// Samples a direction from points p.
     #[inline(always)]
     pub fn sample<L: Lanes<Scalar = T>>(
