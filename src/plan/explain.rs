@@ -78,25 +78,17 @@ fn objects(scene: &Scene) -> String {
 }
 
 fn shape_kind(object: &Object) -> String {
-    let name = match &object.shape {
-        Shape::Sphere => "sphere",
-        Shape::Cube => "cube",
-        Shape::Cylinder => "cylinder",
-        Shape::Disk => "disk",
-        Shape::Rectangle => "rectangle",
-        Shape::Plane => "plane",
-        Shape::Implicit(implicit) => {
-            let what = match &implicit.field.polynomial {
-                Some(polynomial) => format!("of degree {}", polynomial.degree()),
-                None => format!("of {} operations", implicit.field.tape.operations().len()),
-            };
-            return match implicit.name {
-                Some(name) => format!("implicit {name} {what}"),
-                None => format!("implicit surface {what}"),
-            };
-        }
+    let Shape::Implicit(implicit) = &object.shape else {
+        return object.shape.name().to_owned();
     };
-    name.to_owned()
+    let what = match &implicit.field.polynomial {
+        Some(polynomial) => format!("of degree {}", polynomial.degree()),
+        None => format!("of {} operations", implicit.field.tape.operations().len()),
+    };
+    match implicit.name {
+        Some(name) => format!("implicit {name} {what}"),
+        None => format!("implicit surface {what}"),
+    }
 }
 
 fn surface_kind(surface: &Surface) -> &'static str {

@@ -19,6 +19,7 @@ mod tree;
 
 pub use error::{Diagnostic, SceneError};
 pub use file::{LARGEST_FILE, Overrides, load, panel_names, parse, read};
+pub use objects::PLAIN;
 
 use std::sync::Arc;
 

@@ -12,15 +12,31 @@ use super::tree::{Node, Value};
 use super::{Named, Object, Shape};
 use crate::math::affine::Affine;
 
-pub(super) const SHAPES: &[&str] = &[
-    "sphere",
-    "cube",
-    "cylinder",
-    "disk",
-    "rectangle",
-    "plane",
-    "implicit",
+/// The shapes that need nothing said of them, by name.
+pub const PLAIN: [(&str, Shape); 6] = [
+    ("sphere", Shape::Sphere),
+    ("cube", Shape::Cube),
+    ("cylinder", Shape::Cylinder),
+    ("disk", Shape::Disk),
+    ("rectangle", Shape::Rectangle),
+    ("plane", Shape::Plane),
 ];
+
+/// Names of all shapes.
+pub(super) const SHAPES: &[&str] = &[
+    PLAIN[0].0, PLAIN[1].0, PLAIN[2].0, PLAIN[3].0, PLAIN[4].0, PLAIN[5].0, "implicit",
+];
+
+impl Shape {
+    /// Its name in scene files; of an implicit surface that has one, its own.
+    pub fn name(&self) -> &'static str {
+        if let Self::Implicit(implicit) = self {
+            return implicit.name.unwrap_or("implicit");
+        }
+        let plain = PLAIN.iter().find(|(_, shape)| shape == self);
+        plain.map_or("", |(name, _)| name)
+    }
+}
 const KEYS: &[&str] = &["name", "shape", "material", "transform"];
 
 /// A shape as written: canonical form, its size, and where its centre is.
@@ -97,7 +113,7 @@ fn object(
         .or(fields.get("shape"))
         .unwrap_or(node);
     transform::check(report, written.place, &to_world)?;
-    let name = name?.unwrap_or_else(|| format!("{} #{index}", shape_name(&sized.shape)));
+    let name = name?.unwrap_or_else(|| format!("{} #{index}", sized.shape.name()));
     Some(Named {
         name,
         value: Object {
@@ -124,31 +140,11 @@ fn place(transform: Option<Affine>, sized: &Sized) -> Affine {
         .unwrap_or(Affine::IDENTITY)
 }
 
-fn shape_name(shape: &Shape) -> &'static str {
-    match shape {
-        Shape::Sphere => "sphere",
-        Shape::Cube => "cube",
-        Shape::Cylinder => "cylinder",
-        Shape::Disk => "disk",
-        Shape::Rectangle => "rectangle",
-        Shape::Plane => "plane",
-        Shape::Implicit(implicit) => implicit.name.unwrap_or("implicit"),
-    }
-}
-
 fn shape(report: &Report, node: &Node, finder: &DefaultFinder) -> Option<Sized> {
     match &node.value {
         Value::Text(_) => {
-            let choices = [
-                ("sphere", Shape::Sphere),
-                ("cube", Shape::Cube),
-                ("cylinder", Shape::Cylinder),
-                ("disk", Shape::Disk),
-                ("rectangle", Shape::Rectangle),
-                ("plane", Shape::Plane),
-            ];
-            let shapes: Vec<(&str, &Shape)> = choices.iter().map(|(n, s)| (*n, s)).collect();
-            let shape = report.choice("object.shape", node, &shapes)?.clone();
+            let choices: Vec<(&str, &Shape)> = PLAIN.iter().map(|(n, s)| (*n, s)).collect();
+            let shape = report.choice("object.shape", node, &choices)?.clone();
             Some(plain(shape, DVec3::ONE))
         }
         Value::Table(table) if table.get("implicit").is_some() => {

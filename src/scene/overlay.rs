@@ -20,15 +20,7 @@ const RIVALS: &[&[&str]] = &[
     &["ior", "cauchy", "sellmeier"],
     &["ideal", "n"],
     &["ideal", "k"],
-    &[
-        "sphere",
-        "cube",
-        "cylinder",
-        "disk",
-        "rectangle",
-        "plane",
-        "implicit",
-    ],
+    super::objects::SHAPES,
 ];
 
 /// Keys that mean nothing without a rival that has given way.

@@ -28,7 +28,7 @@ mod value;
 
 use glam::DVec3;
 
-use crate::scene::Shape;
+use crate::scene::{PLAIN, Shape};
 
 use crate::math::number::Number;
 use line::{LocalRay, Span};
@@ -65,6 +65,14 @@ impl ShapeKind {
             Shape::Plane => Self::Plane,
             Shape::Implicit(_) => return None,
         })
+    }
+
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        let own = PLAIN
+            .iter()
+            .find(|(_, shape)| Self::of(shape) == Some(self));
+        own.map_or("", |(name, _)| name)
     }
 
     /// Whether the shape is a piece of the plane z = 0, with +z as its front.

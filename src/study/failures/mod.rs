@@ -58,12 +58,7 @@ impl Subject {
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Canonical(ShapeKind::Sphere) => "sphere",
-            Self::Canonical(ShapeKind::Cube) => "cube",
-            Self::Canonical(ShapeKind::Cylinder) => "cylinder",
-            Self::Canonical(ShapeKind::Disk) => "disk",
-            Self::Canonical(ShapeKind::Rectangle) => "rectangle",
-            Self::Canonical(ShapeKind::Plane) => "plane",
+            Self::Canonical(kind) => kind.name(),
             Self::Implicit(name) => name,
         }
     }
