@@ -37,11 +37,11 @@ pub fn run(arguments: &args::Chart) -> Result<Answer, CommandError> {
     let svg = figure
         .svg()
         .map_err(|e| CommandError::Study(e.to_string()))?;
-    write_chart(&arguments.output, &svg)?;
+    let paths = write_chart(&arguments.output, &svg)?;
     let mut lines = vec![format!(
         "{}, {}: {} curves of {} renders",
-        arguments.output.with_extension("svg").display(),
-        arguments.output.with_extension("png").display(),
+        paths[0].display(),
+        paths[1].display(),
         curves.len(),
         rows.len()
     )];

@@ -104,11 +104,23 @@ fn publish(request: &Request, study: &Study) -> Result<(), CommandError> {
     write(&request.directory.join("report.html"), page.as_bytes())
 }
 
-/// Writes a chart as NAME.svg and NAME.png.
-pub fn write_chart(base: &Path, svg: &str) -> Result<(), CommandError> {
+/// Writes a chart as NAME.svg and NAME.png, whose paths it returns; an ending of NAME that is one of
+/// these is dropped, any other dot belongs to the name.
+pub fn write_chart(base: &Path, svg: &str) -> Result<[PathBuf; 2], CommandError> {
     let picture = raster::png(svg).map_err(|error| CommandError::Study(error.to_string()))?;
-    write(&base.with_extension("svg"), svg.as_bytes())?;
-    write(&base.with_extension("png"), &picture)
+    let ending = base.extension().and_then(|ending| ending.to_str());
+    let bare = match ending {
+        Some("svg" | "png") => base.with_extension(""),
+        _ => base.to_owned(),
+    };
+    let paths = [".svg", ".png"].map(|ending| {
+        let mut name = bare.clone().into_os_string();
+        name.push(ending);
+        PathBuf::from(name)
+    });
+    write(&paths[0], svg.as_bytes())?;
+    write(&paths[1], &picture)?;
+    Ok(paths)
 }
 
 /// Writes a file, whole or not at all.

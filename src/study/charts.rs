@@ -229,10 +229,15 @@ fn floor(curves: &[Curve], of: impl Fn(&Row) -> f64) -> Vec<(f64, String)> {
     }
 }
 
+/// Errors and seconds along a line that falls.
+type Line = Vec<(f64, f64)>;
+
 /// What each program takes for the same error, in words: at `at` where all reach it, else at the
-/// middle of what all reach.
+/// middle of what all reach. A program takes as long as the fastest of its methods; between two
+/// numbers of samples of a method, its line says how long.
 fn faster(curves: &[Curve], at: f64) -> Vec<String> {
-    let mut programs: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
+    // By program: its front, and those of its methods.
+    let mut programs: Vec<(String, Vec<Line>)> = Vec::new();
     for curve in curves {
         if programs.iter().any(|(name, _)| *name == curve.renderer) {
             continue;
@@ -242,26 +247,22 @@ fn faster(curves: &[Curve], at: f64) -> Vec<String> {
             .filter(|c| c.renderer == curve.renderer)
             .cloned()
             .collect();
-        let coordinates = |(c, p): &(usize, usize)| {
-            let point = &own[*c].points[*p];
-            let seconds = point.mean(|row| row.seconds).value;
-            (point.mean(|row| row.relmse).value, seconds)
-        };
-        let front: Vec<_> = front(&own).iter().map(coordinates).collect();
-        programs.push((curve.renderer.clone(), front));
+        let methods = own.iter().map(|c| line(std::slice::from_ref(c)));
+        let lines = std::iter::once(line(&own)).chain(methods).collect();
+        programs.push((curve.renderer.clone(), lines));
     }
-    if programs.len() < 2 || programs.iter().any(|(_, front)| front.is_empty()) {
+    if programs.len() < 2 || programs.iter().any(|(_, lines)| lines[0].is_empty()) {
         return Vec::new();
     }
     // Fronts fall: their first error is their largest.
     let largest = programs
         .iter()
-        .map(|(_, f)| f[0].0)
+        .map(|(_, lines)| lines[0][0].0)
         .fold(f64::INFINITY, f64::min);
     let smallest = programs
         .iter()
-        .map(|(_, f)| f[f.len() - 1].0)
-        .fold(0.0, f64::max);
+        .filter_map(|(_, lines)| lines[0].last())
+        .fold(0.0, |smallest: f64, (error, _)| smallest.max(*error));
     if smallest > largest {
         return vec!["The programs reach no error in common.".to_owned()];
     }
@@ -270,8 +271,11 @@ fn faster(curves: &[Curve], at: f64) -> Vec<String> {
     } else {
         (smallest * largest).sqrt()
     };
-    let seconds = |front: &[(f64, f64)]| between(front, error);
-    let own = programs.iter().map(|(name, front)| (name, seconds(front)));
+    let seconds = |lines: &[Line]| {
+        let methods = lines.iter().filter_map(|line| between(line, error));
+        methods.fold(f64::INFINITY, f64::min)
+    };
+    let own = programs.iter().map(|(name, lines)| (name, seconds(lines)));
     let mut own: Vec<(&String, f64)> = own.collect();
     own.sort_by(|a, b| a.1.total_cmp(&b.1));
     let (best, least) = own[0];
@@ -284,14 +288,27 @@ fn faster(curves: &[Curve], at: f64) -> Vec<String> {
     others.collect()
 }
 
-/// Seconds at an error within a front, straight between its points on logarithmic axes.
-fn between(front: &[(f64, f64)], error: f64) -> f64 {
-    for pair in front.windows(2) {
-        let ((e0, s0), (e1, s1)) = (pair[0], pair[1]);
-        if (e1..=e0).contains(&error) {
-            let share = (error / e0).ln() / (e1 / e0).ln();
-            return s0 * (s1 / s0).powf(share);
-        }
+/// The front of some curves.
+fn line(curves: &[Curve]) -> Line {
+    let coordinates = |(c, p): &(usize, usize)| {
+        let point = &curves[*c].points[*p];
+        let seconds = point.mean(|row| row.seconds).value;
+        (point.mean(|row| row.relmse).value, seconds)
+    };
+    front(curves).iter().map(coordinates).collect()
+}
+
+/// Seconds at an error along a line, straight between its points on logarithmic axes; `None` where
+/// it does not reach the error.
+fn between(line: &[(f64, f64)], error: f64) -> Option<f64> {
+    if let [(only, seconds)] = line {
+        return (*only == error).then_some(*seconds);
     }
-    front[0].1
+    line.windows(2).find_map(|pair| {
+        let ((e0, s0), (e1, s1)) = (pair[0], pair[1]);
+        (e1..=e0).contains(&error).then(|| {
+            let share = (error / e0).ln() / (e1 / e0).ln();
+            s0 * (s1 / s0).powf(share)
+        })
+    })
 }
