@@ -3,7 +3,8 @@
 //! `tests/data/truths.json` holds families of set-ups with their parameters and exact answers.
 //! Every family is a function of its parameters: it builds the scenes, says which number of the
 //! file each one must give, and works the closed form out once more where that is short. The
-//! environment variable `ETALON_TRUTHS` names another file of the same form.
+//! environment variable `ETALON_TRUTHS` names another file of the same form, `ETALON_TRUTH_SHARPNESS`
+//! makes all errors so many times smaller, `ETALON_TRUTH_ONLY` takes some of the numbers.
 
 #![allow(
     clippy::unwrap_used,
