@@ -1,6 +1,11 @@
 //! The wavelength grid: the cumulative density against its closed form, and what the observer's
 //! weights make of flat spectra.
 
+#![allow(
+    clippy::unwrap_used,
+    reason = "the tests' own tables are right, and a panic says where"
+)]
+
 use etalon::integrate::develop::Spectrometer;
 use etalon::integrate::pool::Rows;
 use etalon::math::lanes::Scalar;

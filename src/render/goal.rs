@@ -225,7 +225,7 @@ impl Pilot {
     }
 
     fn is_certain(&self) -> bool {
-        self.renders == RENDERS || !(self.worst().freedom < FREEDOM)
+        self.renders == RENDERS || self.worst().freedom >= FREEDOM
     }
 
     /// Relative standard error to plan with. Samples in proportion to an estimated variance s² of
