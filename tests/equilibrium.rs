@@ -10,9 +10,7 @@
 
 use std::path::Path;
 
-use etalon::math::instructions::Instructions;
 use etalon::plan::Plan;
-use etalon::render::tile::Window;
 use etalon::render::{Request, Unwatched, render};
 use etalon::scene::{self, Overrides, Scene};
 use etalon::stats::Estimate;
@@ -25,7 +23,8 @@ const ROOMS: u64 = 300;
 /// Probability of a false alarm of all of them together.
 const LEVEL: f64 = 1e-4;
 
-/// What rare paths may bring, which a few hundred samples cannot have an error bar for.
+/// What rare paths may bring, which a few hundred samples cannot have an error bar for: of 1 000
+/// rooms two were 2.5e-5 off, ten of their standard errors, and right with 65 536 paths a pixel.
 const RARE: f64 = 1e-4;
 
 fn number(rng: &mut Pcg64Mcg, low: f64, high: f64) -> f64 {
@@ -137,12 +136,7 @@ water = {{ glass = "water" }}
 
 fn mean(scene: &Scene) -> Estimate {
     let plan = Plan::new(scene, false).unwrap();
-    let request = Request {
-        window: Window::whole(scene.image.size),
-        samples: scene.image.spp,
-        time: None,
-        instructions: Instructions::best(),
-    };
+    let request = Request::whole(scene.image.size, scene.image.spp);
     let rendered = render(&plan, &request, &mut Unwatched);
     assert_eq!(rendered.not_a_number, 0);
     let mean = rendered.mean_luminance();

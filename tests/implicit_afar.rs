@@ -9,7 +9,6 @@ use std::path::Path;
 
 use etalon::integrate::chunk;
 use etalon::plan::{Plan, explain};
-use etalon::render::tile::Window;
 use etalon::render::{Instructions, Request, Unwatched, render, replay};
 use etalon::scene::{Overrides, parse};
 use glam::DVec3;
@@ -123,12 +122,7 @@ fn scaled(scale: f64) -> Vec<[u64; 3]> {
         at(1.0, 4.0, 3.0),
     );
     let (plan, size) = plan(&text);
-    let request = Request {
-        window: Window::whole(size),
-        samples: 8,
-        time: None,
-        instructions: Instructions::best(),
-    };
+    let request = Request::whole(size, 8);
     let rendered = render(&plan, &request, &mut Unwatched);
     let pixels = rendered.xyz();
     pixels.iter().map(|e| e.mean.map(f64::to_bits)).collect()

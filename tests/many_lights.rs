@@ -7,9 +7,7 @@
 
 use std::path::Path;
 
-use etalon::math::instructions::Instructions;
 use etalon::plan::{Plan, Tables};
-use etalon::render::tile::Window;
 use etalon::render::{Request, Unwatched, render};
 use etalon::scene::{self, Overrides, Scene};
 use etalon::stats::Estimate;
@@ -60,12 +58,7 @@ fn mean(scene: &Scene, seed: u64, disturb: impl Fn(&mut Plan)) -> Estimate {
     scene.image.seed = seed;
     let mut plan = Plan::new(&scene, false).unwrap();
     disturb(&mut plan);
-    let request = Request {
-        window: Window::whole(scene.image.size),
-        samples: 4096,
-        time: None,
-        instructions: Instructions::best(),
-    };
+    let request = Request::whole(scene.image.size, 4096);
     let rendered = render(&plan, &request, &mut Unwatched);
     assert_eq!(rendered.not_a_number, 0);
     let mean = rendered.mean_luminance();

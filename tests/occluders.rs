@@ -11,8 +11,7 @@ use etalon::integrate::list::List;
 use etalon::integrate::model::Model;
 use etalon::math::lanes::Scalar;
 use etalon::plan::{Plan, Tables};
-use etalon::render::tile::Window;
-use etalon::render::{Instructions, Request, Unwatched, render};
+use etalon::render::{Request, Unwatched, render};
 use etalon::scene::{self, Overrides, Scene};
 
 /// A room whose walls have everything on one side, with a lamp below its ceiling; objects 0 to 3.
@@ -137,12 +136,7 @@ fn bits(scene: &Scene, hiding: Option<&[u32]>) -> Vec<[u64; 3]> {
             Tables::Double(tables) => ask_only(&mut tables.0, hiding),
         }
     }
-    let request = Request {
-        window: Window::whole(scene.image.size),
-        samples: scene.image.spp,
-        time: None,
-        instructions: Instructions::best(),
-    };
+    let request = Request::whole(scene.image.size, scene.image.spp);
     let estimates = render(&plan, &request, &mut Unwatched).xyz();
     estimates.iter().map(|e| e.mean.map(f64::to_bits)).collect()
 }

@@ -8,9 +8,7 @@
 
 use std::path::Path;
 
-use etalon::math::instructions::Instructions;
 use etalon::plan::Plan;
-use etalon::render::tile::Window;
 use etalon::render::{Request, Unwatched, render};
 use etalon::sample::Slot;
 use etalon::scene::{Overrides, SamplerKind, parse};
@@ -184,12 +182,7 @@ fn picture(objects: &str, kind: SamplerKind, spp: u32, seed: u64) -> Vec<f64> {
     );
     let scene = parse("slope", &text, Path::new("."), &Overrides::default()).unwrap();
     let plan = Plan::new(&scene, false).unwrap();
-    let request = Request {
-        window: Window::whole(scene.image.size),
-        samples: spp,
-        time: None,
-        instructions: Instructions::best(),
-    };
+    let request = Request::whole(scene.image.size, spp);
     let rendered = render(&plan, &request, &mut Unwatched);
     rendered.xyz().iter().map(|pixel| pixel.mean[1]).collect()
 }

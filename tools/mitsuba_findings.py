@@ -259,6 +259,32 @@ def samplers_between_seeds():
     return ", ".join(cells) + " (1 is right)"
 
 
+@finding
+def few_samples():
+    """Pixels of many joined pictures of few paths, against independent ones: mean over pixels of the
+    squared difference over what both spreads promise."""
+    lamp = {"type": "area", "radiance": {"type": "uniform", "value": 4.0}}
+    above = mi.ScalarTransform4f().translate([-1, 5, 1]).rotate([1, 0, 0], 90).scale(1.5)
+    mirror = {"type": "conductor", "material": "none"}
+    floor = mi.ScalarTransform4f().translate([0, -0.6, 0]).rotate([1, 0, 0], -90).scale(5)
+    scene = {
+        "ball": {"type": "sphere", "radius": 0.6, "center": [-0.7, 0, 0], "bsdf": {"type": "diffuse"}},
+        "mirror": {"type": "sphere", "radius": 0.6, "center": [0.7, 0, 0], "bsdf": mirror},
+        "floor": {"type": "rectangle", "to_world": floor, "bsdf": {"type": "diffuse"}},
+        "lamp": {"type": "disk", "to_world": above, "emitter": lamp},
+        "sky": flat(0.2),
+    }
+    options = {"size": (32, 32), "depth": 5}
+    truth, variance = joined(scene, "independent", 64, 1024, 10_000, options)
+    cells = []
+    for kind, spp, count in (("independent", 4, 2000), ("multijitter", 4, 2000), ("multijitter", 9, 900)):
+        mean, own = joined(scene, kind, count, spp, 0, options)
+        seen = own > 0
+        ratio = np.mean((mean - truth)[seen] ** 2 / (own + variance)[seen])
+        cells.append(f"`{kind}` of {spp} paths {ratio:.2f}")
+    return ", ".join(cells) + " (1 is right)"
+
+
 def joined(scene, sampler, count, spp, first, options):
     """Mean Y of pictures with different seeds, and the variance of that mean."""
     pictures = [picture(scene, spp=spp, seed=first + seed, sampler=sampler, **options)[..., 1] for seed in range(count)]

@@ -13,10 +13,13 @@ import numpy as np
 import mitsuba_scene
 import spectra
 from reference_file import BANDS
+from scene_file import SceneError
 
 # nm. What crosses the picture with the wavelength differs within a stratum, and the error counts that
 # difference as noise: with 5 nm it was the larger part of the prism's error by a factor of ten.
 STRATUM = 1.0
+# Fewest paths of Mitsuba's `multijitter` that were seen to be right.
+LEAST_JITTERED = 9
 # Width about a wavelength, nm. Its ends are whole multiples of 1/1024 nm, which single precision holds.
 LINE = 1 / 8
 
@@ -31,6 +34,11 @@ def has_dispersion(tables):
 def pictures(reference, first_seed):
     """Yields `reference.replicates` pictures (height×width×channel, float64): linear Rec. 709, then
     mean spectral radiance in each band."""
+    if reference.sampler == "multijitter" and reference.spp < LEAST_JITTERED:
+        raise SceneError(
+            f"multijitter is wrong on average with fewer than {LEAST_JITTERED} paths (few_samples in "
+            f"reference/README.md): ask for --spp {LEAST_JITTERED}, or for --sampler independent"
+        )
     tables = reference.tables()
     tables["image"] |= {"spp": reference.spp}
     each = by_wavelength if has_dispersion(tables) else all_wavelengths

@@ -72,6 +72,18 @@ pub struct Share {
     pub standard_error: f64,
 }
 
+impl Request {
+    /// All of a picture, with the best instructions there are and no limit of time.
+    pub fn whole(size: [u32; 2], samples: u32) -> Self {
+        Self {
+            window: Window::whole(size),
+            samples,
+            time: None,
+            instructions: Instructions::best(),
+        }
+    }
+}
+
 /// Renders. Passes are over the whole window and their sizes are fixed before they begin, so that
 /// stopping between them favours no sample.
 pub fn render(plan: &Plan, request: &Request, progress: &mut dyn Progress) -> Rendered {

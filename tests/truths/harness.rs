@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use etalon::plan::Plan;
-use etalon::render::Instructions;
 use etalon::render::session::{Rendered, Request, Unwatched, render as run};
 use etalon::render::tile::Window;
 use etalon::scene::{Overrides, parse};
@@ -145,9 +144,7 @@ pub fn render(text: &Text, spp: u32, seed: u64, window: Option<Window>) -> Rende
     let plan = Plan::new(&scene, false).unwrap();
     let request = Request {
         window: window.unwrap_or(Window::whole(scene.image.size)),
-        samples: spp,
-        time: None,
-        instructions: Instructions::best(),
+        ..Request::whole(scene.image.size, spp)
     };
     let rendered = run(&plan, &request, &mut Unwatched);
     assert_eq!(rendered.not_a_number, 0, "{file}");

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use crate::film::names;
 use crate::film::pixels::Estimate;
 use crate::film::spectral::channel_name;
-use crate::math::instructions::Instructions;
 use crate::plan::{Plan, PlanError};
 use crate::render::bins::{BinError, BinGrid};
 use crate::render::session::{Rendered, Request, Unwatched, render, render_binned};
@@ -146,12 +145,7 @@ impl Case {
     /// # Errors
     /// [`CaseError::NotANumber`].
     pub fn rendered(&self, plan: &Plan, spp: u32) -> Result<Side, CaseError> {
-        let request = Request {
-            window: Window::whole(self.scene.image.size),
-            samples: spp,
-            time: None,
-            instructions: Instructions::best(),
-        };
+        let request = Request::whole(self.scene.image.size, spp);
         let rendered = match &self.bands {
             Some(grid) => render_binned(plan, &request, grid, &mut Unwatched),
             None => render(plan, &request, &mut Unwatched),
