@@ -16,6 +16,7 @@ import mitsuba as mi
 import numpy as np
 
 import mitsuba_scene
+import scene_file
 import spectra
 
 RAYS = 100_000
@@ -147,6 +148,64 @@ def other_shapes_under_general_maps():
     """The other shapes under the same map."""
     kinds = ["cube", "rectangle", "disk", "cylinder"]
     return ", ".join(f"`{kind}` {wrong_share(kind, GENERAL)}" for kind in kinds) + " of rays wrong"
+
+
+@finding
+def ellipsoids_in_single_precision():
+    """A white ellipsoid seen from afar in light from everywhere, direct light: 1 is right."""
+    stretched = np.diag([0.5, 0.2, 0.2, 1.0]) @ (np.eye(4) - 0.9 * np.outer([1, 0, 0, 0], [0, 0, 1, 0]))
+    white = {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": {"type": "uniform", "value": 1.0}}}
+    group = {"type": "shapegroup", "sphere": {"type": "sphere", "bsdf": white}}
+    before, cells = mi.variant(), []
+    for variant in (mitsuba_scene.DEFAULT_VARIANT, "scalar_spectral"):
+        mi.set_variant(variant)
+        instance = {"type": "instance", "to_world": transform(stretched), "group": {"type": "ref", "id": "group"}}
+        look = mi.ScalarTransform4f().look_at(origin=[0, 0, 6], target=[0, 0, 0], up=[0, 1, 0])
+        camera = {"to_world": look @ mi.ScalarTransform4f().scale(0.1)}
+        mean = relative_y({"group": group, "instance": instance, "sky": flat()}, sensor=camera)
+        cells.append(f"`{variant}` {mean[0]:.4f} ± {mean[1]:.4f}")
+    mi.set_variant(before)
+    return ", ".join(cells)
+
+
+@finding
+def lights_under_general_maps():
+    """A white floor below a light of radiance 1 under a general map, and a sky of 1, direct light: 1 is right."""
+    white = {"type": "diffuse", "reflectance": {"type": "uniform", "value": 1.0}}
+    light = {"type": "area", "radiance": {"type": "uniform", "value": 1.0}}
+    cells = []
+    for kind in ("cube", "rectangle", "disk", "cylinder"):
+        floor = transform(np.diag([20, 20, 1, 1.0]) + np.outer([0, 0, -2, 0], [0, 0, 0, 1]))
+        shape = placed(kind, GENERAL @ scene_file.rotation([1, 0, 0], 180))["shape"] | {"emitter": light}
+        scene = {"floor": {"type": "rectangle", "to_world": floor, "bsdf": white}, "light": shape, "sky": flat()}
+        # Seen from below the light, so that only the floor is.
+        look = mi.ScalarTransform4f().look_at(origin=[0, 0, -1.9], target=[0, 0, -2], up=[0, 1, 0])
+        mean = relative_y(scene, sensor={"to_world": look})
+        cells.append(f"`{kind}` {mean[0]:.4f} ± {mean[1]:.4f}")
+    return ", ".join(cells)
+
+
+def relative_y(scene, sensor):
+    """Mean Y of direct light in 16 pictures, over that of radiance 1, and its standard error."""
+    values = [picture(scene, spp=1024, seed=seed, depth=2, sensor=sensor)[..., 1].mean() for seed in range(16)]
+    values = np.array(values) * mitsuba_scene.MITSUBA_Y_INTEGRAL / mitsuba_scene.ETALON_Y_INTEGRAL
+    return values.mean(), values.std(ddof=1) / 4
+
+
+@finding
+def closed_cylinders():
+    """A floor beside a black cylinder whose wall and caps emit inward only: 0 is right."""
+    light = {"type": "area", "radiance": {"type": "uniform", "value": 1.0}}
+    black = {"type": "diffuse", "reflectance": {"type": "uniform", "value": 0.0}}
+    white = {"type": "diffuse", "reflectance": {"type": "uniform", "value": 1.0}}
+    floor = transform(np.diag([20, 20, 1, 1.0]) + np.outer([0, 0, -2, 0], [0, 0, 0, 1]))
+    scene = {"floor": {"type": "rectangle", "to_world": floor, "bsdf": white}}
+    for part, (kind, local) in mitsuba_scene.canonical_parts("cylinder").items():
+        inward = {"flip_normals": True, "bsdf": black, "emitter": light}
+        scene[f"cylinder{part}"] = {"type": kind, "to_world": transform(local)} | inward
+    look = mi.ScalarTransform4f().look_at(origin=[3, 0, 1], target=[3, 0, 0], up=[0, 1, 0])
+    mean, error = relative_y(scene, sensor={"to_world": look})
+    return f"Y {mean:.1e} ± {error:.1e}"
 
 
 @finding

@@ -10,18 +10,16 @@ red or green paint; `--film observer` makes it use the published 1 nm table (and
 
 What is not the same: dispersion (Mitsuba's glass has the index at 550 nm at every wavelength;
 reference.py goes one wavelength at a time), a plane is a square that ends 100 000 camera distances away,
-and an implicit surface is a fine mesh (implicit_mesh.py). A lens in parallel projection, checkerboards
-on anything but squares and cubes, emitting spheres that are ellipsoids and emitting implicit surfaces have no
-counterpart.
+implicit surfaces and some curved lights are fine meshes (meshes.py). Ellipsoids are right in `scalar` variants
+only (`needs_double`). A lens in parallel projection, checkerboards on anything but squares and cubes, and emitting
+implicit surfaces have no counterpart.
 Russian roulette starts at Mitsuba's own default depth.
 """
 
 import argparse
-import json
 import sys
 import warnings
 from dataclasses import replace
-from functools import cache
 from itertools import product
 from pathlib import Path
 
@@ -29,7 +27,7 @@ import mitsuba as mi
 import numpy as np
 import OpenEXR
 
-import implicit_mesh
+import meshes
 import scene_file
 import spectra
 from scene_file import SceneError
@@ -40,11 +38,13 @@ MITSUBA_Y_INTEGRAL = 106.7502594
 ETALON_Y_INTEGRAL = 106.856914916767
 # Half sizes, in camera distances, of the squares that make up a plane.
 PLANE_EXTENTS = [8, 1000, 100_000]
+# Suffix of the part of a shape that is curved, see `canonical_parts`.
+CURVED_PART = {"sphere": "", "cylinder": "_side"}
 # The same where only the time counts: one square.
 FAST_EXTENTS = [1000]
-# Distance between the two copies of a surface that emits on both sides, of its extent: a hundred
-# times the rounding of coordinates in single precision, so that rays tell the copies apart.
-SIDES_GAP = 1e-5
+# Distance between the two copies of a surface that emits on both sides, over the largest coordinate on
+# the way to it: 64 roundings of single precision, so that rays tell the copies apart.
+SIDES_GAP = 64 * 2.0**-24
 # Sellmeier coefficients B and C (µm²) of src/spectrum/glass.rs, where the sources are named.
 GLASSES = {
     "n-bk7": ([1.03961212, 0.231792344, 1.01046945], [0.00600069867, 0.0200179144, 103.560653]),
@@ -164,7 +164,7 @@ class Builder:
         result = {}
         for side in ["front", "back"] if sides == "both" else [sides]:
             extra = emitter | ({"flip_normals": True} if side == "back" else {})
-            copy = moved(place, side) if sides == "both" else place
+            copy = moved(place, side, SIDES_GAP * (self.view + reach(place))) if sides == "both" else place
             result |= self.shapes(copy, material, f"{key}_{side}", extra)
         return result
 
@@ -180,23 +180,24 @@ class Builder:
         if place.kind == "implicit":
             if extra:
                 raise SceneError(f"{place.name}: a mesh of an implicit surface that emits is no counterpart")
-            return {key: implicit_shape(place, bsdf["bsdf"])}
+            return {key: meshes.implicit(place, bsdf["bsdf"])}
         to_world = unmirrored(place.to_world)
-        if place.kind == "sphere" and not is_similarity(to_world):
-            if extra:
-                raise SceneError(f"{place.name}: Mitsuba cannot place an emitting sphere by a general transform")
-            group = {"type": "shapegroup", "shape": {"type": "sphere"} | bsdf}
-            reference = {"type": "ref", "id": f"{key}_group"}
-            instance = {"type": "instance", "to_world": transform(to_world), "group": reference}
-            return {f"{key}_group": group, key: instance}
-        if place.kind == "sphere":
-            radius = float(np.linalg.norm(to_world[:3, 0]))
-            center = [float(x) for x in to_world[:3, 3]]
-            return {key: {"type": "sphere", "center": center, "radius": radius} | bsdf | extra}
         parts = {
             part: {"type": kind, "to_world": transform(to_world @ local)} | bsdf | extra
             for part, (kind, local) in canonical_parts(place.kind).items()
         }
+        if meshes.is_light_meshed(place, material):
+            side = "back" if "flip_normals" in extra else "front"
+            parts[CURVED_PART[place.kind]] = meshes.light(place, side, bsdf["bsdf"], extra["emitter"])
+        elif place.kind == "sphere" and not meshes.is_circular(place):
+            group = {"type": "shapegroup", "shape": {"type": "sphere"} | bsdf}
+            reference = {"type": "ref", "id": f"{key}_group"}
+            instance = {"type": "instance", "to_world": transform(to_world), "group": reference}
+            return {f"{key}_group": group, key: instance}
+        elif place.kind == "sphere":
+            radius = float(np.linalg.norm(to_world[:3, 0]))
+            center = [float(x) for x in to_world[:3, 3]]
+            parts[""] = {"type": "sphere", "center": center, "radius": radius} | bsdf | extra
         return {key + part: shape for part, shape in parts.items()}
 
     def checkered_cube(self, place, material, key):
@@ -317,22 +318,36 @@ def unmirrored(to_world):
     return to_world
 
 
-def is_similarity(matrix):
-    """Whether a 4×4 matrix keeps the shape of a sphere, up to rounding."""
-    gram = matrix[:3, :3].T @ matrix[:3, :3]
-    return np.allclose(gram, np.eye(3) * gram[0, 0], rtol=0, atol=1e-12 * gram[0, 0])
+def needs_double(tables):
+    """Whether a scene has ellipsoids. In `llvm` variants Mitsuba solves their equation in single
+    precision, and what they scatter starts inside of them: up to 12 % too dark, the smaller the worse."""
+    places = [scene_file.placed(entry) for entry in tables.get("object", [])]
+    materials = tables["materials"]
+    return any(
+        place.kind == "sphere"
+        and not meshes.is_circular(place)
+        and not meshes.is_light_meshed(place, materials[place.material])
+        for place in places
+    )
 
 
-def moved(place, side):
-    """A copy of a placed shape for one of two emitting sides: flat shapes part along their normal,
-    and of closed ones the inner copy is smaller."""
+def reach(place):
+    """Bound of the coordinates of a shape."""
+    return float(np.abs(place.to_world[:3]).sum(axis=1).max())
+
+
+def moved(place, side, gap):
+    """A copy of a placed shape for one of two emitting sides, `gap` apart: flat shapes part along their
+    normal, and of closed ones the inner copy is smaller."""
     matrix = place.to_world
     if place.kind in ("disk", "rectangle", "plane"):
         normal = np.cross(matrix[:3, 0], matrix[:3, 1]) * np.sign(np.linalg.det(matrix[:3, :3]))
-        shift = SIDES_GAP / 2 * np.sqrt(np.linalg.norm(normal)) * normal / np.linalg.norm(normal)
+        shift = gap / 2 * normal / np.linalg.norm(normal)
         matrix = scene_file.step({"translate": shift if side == "front" else -shift}) @ matrix
     elif side == "back":
-        matrix = matrix @ np.diag([1 - SIDES_GAP] * 3 + [1])
+        # The planes where a canonical coordinate is 0 and 1 are 1/|its row of the inverse| apart.
+        heights = 1 / np.linalg.norm(np.linalg.inv(matrix[:3, :3]), axis=1)
+        matrix = matrix @ np.diag([*(1 - gap / heights), 1])
     return replace(place, to_world=matrix)
 
 
@@ -350,51 +365,6 @@ def glass_index(glass, nm=None):
         return float(sum(a / squared**i for i, a in enumerate(glass["cauchy"])))
     b, c = GLASSES[glass.lower()] if isinstance(glass, str) else (glass["sellmeier"]["b"], glass["sellmeier"]["c"])
     return float(np.sqrt(1 + sum(b * squared / (squared - c) for b, c in zip(b, c, strict=True))))
-
-
-@cache
-def implicit_mesh_of(text):
-    """Field and mesh of the shape that a JSON text describes."""
-    field = implicit_mesh.Field(json.loads(text))
-    return field, implicit_mesh.mesh(field)
-
-
-def implicit_shape(place, bsdf):
-    """A Mitsuba mesh of an implicit surface, with smooth normals."""
-    try:
-        _, (vertices, normals, triangles) = implicit_mesh_of(json.dumps(place.form))
-    except SceneError as error:
-        raise SceneError(f"{place.name}: {error}") from None
-    linear = place.to_world[:3, :3]
-    vertices = vertices @ linear.T + place.to_world[:3, 3]
-    normals = implicit_mesh.unit(normals @ np.linalg.inv(linear))
-    if np.linalg.det(linear) < 0:
-        triangles = triangles[:, ::-1]
-    properties = mi.Properties()
-    properties["bsdf"] = mi.load_dict(bsdf)
-    shape = mi.Mesh("implicit", len(vertices), len(triangles), props=properties, has_vertex_normals=True)
-    values = mi.traverse(shape)
-    values["vertex_positions"] = np.ravel(vertices).astype(np.float32)
-    values["vertex_normals"] = np.ravel(normals).astype(np.float32)
-    values["faces"] = np.ravel(triangles).astype(np.uint32)
-    values.update()
-    return shape
-
-
-def mesh_notes(tables):
-    """What the meshes of a scene are and how far they are from their surfaces, in object coordinates."""
-    notes = []
-    for entry in tables.get("object", []):
-        place = scene_file.placed(entry)
-        if place.kind == "implicit":
-            field, parts = implicit_mesh_of(json.dumps(place.form))
-            found = implicit_mesh.distances(field, *parts)
-            notes.append(
-                f"{place.name}: mesh of {len(parts[2])} triangles; largest distance to the surface "
-                f"{found['outside']:.1e}, mean {found['mean']:.1e}; of the surface to it {found['missed']:.1e}; "
-                f"99.9 % of normals within {found['normal']:.1e} rad"
-            )
-    return notes
 
 
 def box(low, high):

@@ -28,6 +28,7 @@ from pathlib import Path
 import mitsuba as mi
 
 import etalon
+import meshes
 import mitsuba_scene
 import reference_agreement
 import reference_file
@@ -42,8 +43,10 @@ SEEDS_EACH = 8192
 
 def choose_variant(reference, arguments):
     """Sets Mitsuba's variant: many small pictures of one wavelength each are faster in the scalar one,
-    which compiles nothing."""
-    variant = "scalar_spectral" if replicates.has_dispersion(reference.tables()) else arguments.variant
+    which compiles nothing, and ellipsoids are right there only."""
+    tables = reference.tables()
+    scalar = replicates.has_dispersion(tables) or mitsuba_scene.needs_double(tables)
+    variant = "scalar_spectral" if scalar else arguments.variant
     mitsuba_scene.set_variant(variant, arguments.threads)
 
 
@@ -90,6 +93,8 @@ def settings(tables):
     result = {"mitsubaVersion": mi.__version__}
     if any(scene_file.placed(entry).kind == "plane" for entry in tables.get("object", [])):
         result["planeExtent"] = mitsuba_scene.PLANE_EXTENTS[-1]
+    if mitsuba_scene.needs_double(tables):
+        result["variant"] = "scalar_spectral"
     return result
 
 
@@ -100,7 +105,7 @@ def real_spp(reference):
 
 def stand_ins(tables):
     """What stands in for something that Mitsuba lacks, with its measured error."""
-    notes = mitsuba_scene.mesh_notes(tables)
+    notes = meshes.notes(tables)
     if replicates.has_dispersion(tables):
         notes.append(
             f"glass: one wavelength at a time with the constant index there, in strata of {replicates.STRATUM} nm; "
