@@ -193,19 +193,23 @@ def relative_y(scene, sensor):
 
 
 @finding
-def closed_cylinders():
-    """A floor beside a black cylinder whose wall and caps emit inward only: 0 is right."""
+def closed_lights():
+    """A floor beside a black cylinder, or cube, whose walls emit inward only: 0 is right."""
     light = {"type": "area", "radiance": {"type": "uniform", "value": 1.0}}
     black = {"type": "diffuse", "reflectance": {"type": "uniform", "value": 0.0}}
     white = {"type": "diffuse", "reflectance": {"type": "uniform", "value": 1.0}}
     floor = transform(np.diag([20, 20, 1, 1.0]) + np.outer([0, 0, -2, 0], [0, 0, 0, 1]))
-    scene = {"floor": {"type": "rectangle", "to_world": floor, "bsdf": white}}
-    for part, (kind, local) in mitsuba_scene.canonical_parts("cylinder").items():
-        inward = {"flip_normals": True, "bsdf": black, "emitter": light}
-        scene[f"cylinder{part}"] = {"type": kind, "to_world": transform(local)} | inward
-    look = mi.ScalarTransform4f().look_at(origin=[3, 0, 1], target=[3, 0, 0], up=[0, 1, 0])
-    mean, error = relative_y(scene, sensor={"to_world": look})
-    return f"Y {mean:.1e} ± {error:.1e}"
+    tilted = scene_file.rotation([1, 0.7, 0], 35)
+    cells = []
+    for kind in ("cylinder", "cube"):
+        scene = {"floor": {"type": "rectangle", "to_world": floor, "bsdf": white}}
+        for part, (type_name, local) in mitsuba_scene.canonical_parts(kind).items():
+            inward = {"flip_normals": True, "bsdf": black, "emitter": light}
+            scene[f"light{part}"] = {"type": type_name, "to_world": transform(tilted @ local)} | inward
+        look = mi.ScalarTransform4f().look_at(origin=[3, 0, 1], target=[3, 0, 0], up=[0, 1, 0])
+        mean, error = relative_y(scene, sensor={"to_world": look})
+        cells.append(f"`{kind}` {mean:.1e} ± {error:.1e}")
+    return "Y " + ", ".join(cells)
 
 
 @finding
