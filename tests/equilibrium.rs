@@ -68,7 +68,16 @@ fn room(number_of_room: u64, lost: f64) -> Scene {
             format!("{{ cylinder = {{ radius = {radius}, height = {height} }} }}")
         }
     };
-    let place = format!("{}, {{ translate = {} }}", turn(rng), triple(rng, 1.0));
+    let lean = [
+        "",
+        "{ scale = [1, 1.3, 0.9] }, ",
+        "{ scale = [0.9, 1, 1.2] }, { shear = { xz = 0.3, yx = -0.2 } }, ",
+    ][rng.random_range(0..3)];
+    let place = format!(
+        "{lean}{}, {{ translate = {} }}",
+        turn(rng),
+        triple(rng, 1.0)
+    );
     let lens = ["", "lens = { radius = 0.1, focus = 2 }"][rng.random_range(0..2)];
     let environment = if sky {
         format!("environment = {}", 1.0 - lost)

@@ -9,11 +9,11 @@
 use std::f64::consts::PI;
 
 use etalon::light::{
-    CubeLight, CylinderLight, LightShape, PlanarLight, RectangleLight, SphereLight,
+    CubeLight, CylinderLight, LightShape, MappedLight, PlanarLight, RectangleLight, SphereLight,
 };
 use etalon::math::lanes::{Lanes, Mask, Scalar};
 use etalon::math::vec3::Vec3;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -33,6 +33,8 @@ enum Light {
     Sphere { centre: DVec3, radius: f64 },
     Cube { centre: DVec3, half: [DVec3; 3] },
     Cylinder { centre: DVec3, half: [DVec3; 3] },
+    Ellipsoid { centre: DVec3, half: [DVec3; 3] },
+    Barrel { centre: DVec3, half: [DVec3; 3] },
     Point(DVec3),
 }
 
@@ -62,7 +64,36 @@ impl Light {
                 let [a, b, c] = half;
                 LightShape::Cylinder(CylinderLight::new(centre, [a, b], c, both))
             }
+            Self::Ellipsoid { centre, half } => {
+                LightShape::Mapped(MappedLight::ellipsoid(centre, linear(half), both))
+            }
+            Self::Barrel { centre, half } => {
+                LightShape::Mapped(MappedLight::cylinder(centre, linear(half), both))
+            }
             Self::Point(at) => LightShape::Point(at.to_array().map(T::from_f64)),
+        }
+    }
+
+    /// The canonical shape of a mapped one, with the map.
+    fn canonical(&self) -> Option<(Self, DVec3, DMat3)> {
+        let zero = DVec3::ZERO;
+        match *self {
+            Self::Ellipsoid { centre, half } => {
+                let sphere = Self::Sphere {
+                    centre: zero,
+                    radius: 1.0,
+                };
+                Some((sphere, centre, linear(half)))
+            }
+            Self::Barrel { centre, half } => {
+                let half_axes = [DVec3::X, DVec3::Y, DVec3::Z];
+                let cylinder = Self::Cylinder {
+                    centre: zero,
+                    half: half_axes,
+                };
+                Some((cylinder, centre, linear(half)))
+            }
+            _ => None,
         }
     }
 
@@ -150,9 +181,21 @@ impl Light {
                 };
                 Some((t, normal))
             }
+            Self::Ellipsoid { .. } | Self::Barrel { .. } => {
+                let (canonical, centre, map) = self.canonical()?;
+                let back = map.inverse() * direction;
+                let q = map.inverse() * (p - centre);
+                let (t, normal) = canonical.hit(q, back.normalize())?;
+                let normal = map.inverse().transpose() * normal;
+                Some((t / back.length(), normal.normalize()))
+            }
             Self::Point(_) => None,
         }
     }
+}
+
+fn linear([a, b, c]: [DVec3; 3]) -> DMat3 {
+    DMat3::from_cols(a, b, c)
 }
 
 fn cube_normals(half: [DVec3; 3]) -> [DVec3; 3] {
@@ -272,6 +315,11 @@ impl Light {
                     c.normalize() * z.signum()
                 }
             }
+            Self::Ellipsoid { .. } | Self::Barrel { .. } => {
+                let (canonical, centre, map) = self.canonical().unwrap();
+                let normal = canonical.normal_near(map.inverse() * (at - centre));
+                (map.inverse().transpose() * normal).normalize()
+            }
             Self::Point(at) => at,
         }
     }
@@ -342,6 +390,19 @@ fn settings() -> Vec<(Light, Vec<DVec3>)> {
         about(0.4, 0.5, -0.6),
         about(0.0, 0.0, 0.9),
     ];
+    // The same places, over and inside of images of the round shapes.
+    let ellipsoid = [1.05, 1.5, 4.0, 60.0, 0.0, 0.3, 0.9, 0.98]
+        .map(|d| at(0.6 * d, -0.48 * d, 0.64 * d))
+        .to_vec();
+    let barrel = vec![
+        at(2.0, 1.0, 0.3),
+        at(0.3, -0.2, -2.5),
+        at(-1.5, 2.0, 1.8),
+        at(30.0, -50.0, 40.0),
+        at(2.5, 0.3, 1.02),
+        at(0.4, 0.5, -0.6),
+        at(0.0, 0.0, 0.9),
+    ];
     vec![
         (
             Light::Rectangle {
@@ -366,6 +427,20 @@ fn settings() -> Vec<(Light, Vec<DVec3>)> {
                 half: round,
             },
             cylinder,
+        ),
+        (
+            Light::Ellipsoid {
+                centre,
+                half: sides,
+            },
+            ellipsoid,
+        ),
+        (
+            Light::Barrel {
+                centre,
+                half: sides,
+            },
+            barrel,
         ),
     ]
 }
@@ -625,8 +700,8 @@ fn tame() -> Vec<(Light, DVec3)> {
         .flat_map(|(light, receivers)| {
             receivers.into_iter().enumerate().filter_map(move |(i, p)| {
                 let grazing = match light {
-                    Light::Sphere { .. } => 0..0,
-                    Light::Cube { .. } | Light::Cylinder { .. } => 4..5,
+                    Light::Sphere { .. } | Light::Ellipsoid { .. } => 0..0,
+                    Light::Cube { .. } | Light::Cylinder { .. } | Light::Barrel { .. } => 4..5,
                     _ => 2..5,
                 };
                 let rough = grazing.contains(&i);
@@ -874,6 +949,18 @@ fn closed_forms() -> Vec<(String, Light, (DVec3, DVec3), f64)> {
         (DVec3::ZERO, DVec3::new(0.6, 0.0, 0.8)),
         PI,
     ));
+    let (centre, up) = (DVec3::new(0.1, 0.1, 0.3), DVec3::new(0.6, 0.0, 0.8));
+    let half = [
+        DVec3::X,
+        DVec3::new(0.3, 0.6, 0.0),
+        DVec3::new(0.1, 0.2, 1.5),
+    ];
+    for (name, light) in [
+        ("inside an ellipsoid", Light::Ellipsoid { centre, half }),
+        ("inside a leaning cylinder", Light::Barrel { centre, half }),
+    ] {
+        all.push((name.into(), light, (DVec3::ZERO, up), PI));
+    }
     // A receiver on the axis sees the near cap alone, a disk: π sin² of its half-angle.
     all.push((
         "on the axis of a cylinder".into(),

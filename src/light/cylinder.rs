@@ -36,7 +36,7 @@ struct View<L: Lanes> {
 }
 
 /// A part, as masks: side, and of the caps that towards +z.
-struct Part<L: Lanes> {
+pub(super) struct Part<L: Lanes> {
     side: L::Mask,
     top: L::Mask,
 }
@@ -49,12 +49,21 @@ impl<T: Scalar> CylinderLight<T> {
     /// as inside. They are off by at most 4u (|c| + 4 max(r, h)), as on a sphere, which counts twice
     /// in the square; doubled.
     pub fn new(centre: DVec3, base: [DVec3; 2], half_height: DVec3, emits: [bool; 2]) -> Self {
+        let size = base[0].length().max(half_height.length());
+        let off = 8.0 * T::ROUNDOFF * (centre.length() + 4.0 * size);
+        Self::with_walls(centre, base, half_height, off, emits)
+    }
+
+    /// The same where points on the inner wall may seem to be `off` it.
+    pub(super) fn with_walls(
+        centre: DVec3,
+        base: [DVec3; 2],
+        half_height: DVec3,
+        off: f64,
+        emits: [bool; 2],
+    ) -> Self {
         let (radius, height) = (base[0].length(), half_height.length());
-        let off = if emits[1] {
-            8.0 * T::ROUNDOFF * (centre.length() + 4.0 * radius.max(height))
-        } else {
-            0.0
-        };
+        let off = if emits[1] { off } else { 0.0 };
         let inside = [radius * radius * (1.0 + 2.0 * off / radius), height + off];
         Self {
             centre: centre.to_array().map(T::from_f64),
@@ -145,13 +154,24 @@ impl<T: Scalar> CylinderLight<T> {
     }
 
     /// A direction from p.
-    #[inline(never)]
+    #[inline(always)]
     pub fn sample<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         p: Vec3<L::Real>,
-        [u, v]: [L::Real; 2],
+        numbers: [L::Real; 2],
     ) -> Towards<L> {
+        self.sample_part(l, p, numbers).0
+    }
+
+    /// A direction from p and the part it leads to.
+    #[inline(never)]
+    pub(super) fn sample_part<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        p: Vec3<L::Real>,
+        [u, v]: [L::Real; 2],
+    ) -> (Towards<L>, Part<L>) {
         l.vectorize(
             #[inline(always)]
             || {
@@ -199,14 +219,27 @@ impl<T: Scalar> CylinderLight<T> {
                     .scale(to.x)
                     .along(vector(l, y), to.y)
                     .along(vector(l, z), to.z);
-                Towards {
+                let towards = Towards {
                     direction,
                     distance,
                     pdf: self.density(l, &view, direction, &part),
                     valid: view.total.gt(zero),
-                }
+                };
+                (towards, part)
             },
         )
+    }
+
+    /// Density of [`Self::sample_part`].
+    #[inline(always)]
+    pub(super) fn pdf_of_part<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        p: Vec3<L::Real>,
+        direction: Vec3<L::Real>,
+        part: &Part<L>,
+    ) -> L::Real {
+        self.density(l, &self.view(l, p), direction, part)
     }
 
     /// Density of [`Self::sample`].

@@ -2,6 +2,7 @@
 
 mod cube;
 mod cylinder;
+mod mapped;
 mod rectangle;
 mod small;
 mod sphere;
@@ -14,6 +15,7 @@ use crate::sample::warp::square_to_disk;
 
 pub use cube::CubeLight;
 pub use cylinder::CylinderLight;
+pub use mapped::{MappedLight, cylinder_area, ellipsoid_area};
 pub use rectangle::RectangleLight;
 pub use small::SmallLights;
 pub use sphere::{SphereLight, SphereTable};
@@ -62,6 +64,8 @@ pub enum LightShape<T> {
     Cube(CubeLight<T>),
     /// A right circular cylinder: its visible parts.
     Cylinder(CylinderLight<T>),
+    /// An ellipsoid, or a cylinder that is not right circular: as the canonical shape, mapped.
+    Mapped(MappedLight<T>),
     /// A point.
     Point([T; 3]),
     /// Parallel light: the direction towards it.
@@ -105,6 +109,7 @@ impl<T: Scalar> LightShape<T> {
             Self::Sphere(light) => light.sample(l, p, [u, v]),
             Self::Cube(light) => light.sample(l, p, [u, v]),
             Self::Cylinder(light) => light.sample(l, p, [u, v]),
+            Self::Mapped(light) => light.sample(l, p, [u, v]),
             Self::Point(at) => {
                 let to = vector(l, at) - p;
                 let squared = to.length_squared();
@@ -146,6 +151,7 @@ impl<T: Scalar> LightShape<T> {
             Self::Sphere(light) => light.pdf(l, p, direction),
             Self::Cube(light) => light.pdf(l, p, direction, normal),
             Self::Cylinder(light) => light.pdf(l, p, direction, normal),
+            Self::Mapped(light) => light.pdf(l, p, direction, normal),
             Self::Point(_) | Self::Directional(_) => l.real(0.0),
         }
     }

@@ -101,11 +101,13 @@ impl<T: Scalar> SphereLight<T> {
     /// 3u, entries within u, and the centre); so |p − c|² is within u (8 |c|/r + 40) of r², relative
     /// to it. Twice that covers |c| ≤ √3 max|cᵢ| and the test's own rounding.
     pub fn new(centre: DVec3, radius: f64, emits: [bool; 2]) -> Self {
-        let margin = if emits[1] {
-            T::ROUNDOFF * (16.0 * centre.length() / radius + 80.0)
-        } else {
-            0.0
-        };
+        let off = T::ROUNDOFF * (8.0 * centre.length() + 40.0 * radius);
+        Self::with_walls(centre, radius, off, emits)
+    }
+
+    /// The same where points on the inner wall may seem to be `off` it.
+    pub(super) fn with_walls(centre: DVec3, radius: f64, off: f64, emits: [bool; 2]) -> Self {
+        let margin = if emits[1] { 2.0 * off / radius } else { 0.0 };
         Self {
             centre: centre.to_array().map(T::from_f64),
             radius: T::from_f64(radius),

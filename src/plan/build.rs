@@ -1,6 +1,6 @@
 //! From a scene and its choices to the tables of the loop.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::PlanError;
 use super::choose::Choices;
@@ -14,8 +14,8 @@ use crate::integrate::list::List;
 use crate::integrate::model::{Checker, Many, Model, ObjectShading, Scatter};
 use crate::integrate::parts::Parts;
 use crate::light::{
-    CubeLight, CylinderLight, LaneLight, LightShape, PlanarLight, RectangleLight, SmallLights,
-    SphereLight,
+    CubeLight, CylinderLight, LaneLight, LightShape, MappedLight, PlanarLight, RectangleLight,
+    SmallLights, SphereLight, cylinder_area, ellipsoid_area,
 };
 use crate::math::affine::Affine;
 use crate::math::lanes::Scalar;
@@ -434,6 +434,16 @@ fn area_light<T: Scalar>(
             let light = CylinderLight::new(centre, [a, b], c, emits);
             Some((LightShape::Cylinder(light), area))
         }
-        Shape::Sphere | Shape::Cylinder | Shape::Plane | Shape::Implicit(_) => None,
+        Shape::Sphere => {
+            let linear = DMat3::from_cols(a, b, c);
+            let light = MappedLight::ellipsoid(centre, linear, emits);
+            Some((LightShape::Mapped(light), ellipsoid_area(linear)))
+        }
+        Shape::Cylinder => {
+            let linear = DMat3::from_cols(a, b, c);
+            let light = MappedLight::cylinder(centre, linear, emits);
+            Some((LightShape::Mapped(light), cylinder_area(linear)))
+        }
+        Shape::Plane | Shape::Implicit(_) => None,
     }
 }

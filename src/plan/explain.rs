@@ -143,6 +143,7 @@ fn strategy<T>(shape: &LightShape<T>) -> &'static str {
         LightShape::Sphere(_) => "by the solid angle of its cone from outside, by area inside",
         LightShape::Cube(_) => "by the area of its visible faces",
         LightShape::Cylinder(_) => "by the size of its visible parts",
+        LightShape::Mapped(_) => "as the round shape that it is an image of",
         LightShape::Point(_) | LightShape::Directional(_) => "by its one direction",
     }
 }
