@@ -38,10 +38,13 @@ MITSUBA_Y_INTEGRAL = 106.7502594
 ETALON_Y_INTEGRAL = 106.856914916767
 # Half sizes, in camera distances, of the squares that make up a plane.
 PLANE_EXTENTS = [8, 1000, 100_000]
-# Suffix of the part of a shape that is curved, see `canonical_parts`.
-CURVED_PART = {"sphere": "", "cylinder": "_side"}
 # The same where only the time counts: one square.
 FAST_EXTENTS = [1000]
+# Suffix of the part of a shape that is curved, see `canonical_parts`.
+CURVED_PART = {"sphere": "", "cylinder": "_side"}
+# Distance from which on the camera sees something, in camera distances: a thousandth would let parallel
+# rays begin behind what they start beside.
+NEAR_CLIP = 1e-6
 # Distance between the two copies of a surface that emits on both sides, over the largest coordinate on
 # the way to it: 64 roundings of single precision, so that rays tell the copies apart.
 SIDES_GAP = 64 * 2.0**-24
@@ -130,7 +133,7 @@ class Builder:
         camera = self.scene["camera"]
         up = camera.get("up", [0, 1, 0])
         place = mi.ScalarTransform4f().look_at(origin=camera["from"], target=camera["to"], up=up)
-        clip = {"near_clip": float(1e-3 * self.view), "far_clip": float(1e7 * self.view)}
+        clip = {"near_clip": float(NEAR_CLIP * self.view), "far_clip": float(1e7 * self.view)}
         lens = camera.get("lens", {"radius": 0})
         width, height = self.scene["image"]["size"]
         if "orthographic" in camera:

@@ -102,7 +102,7 @@ pub fn bounce<L: Lanes, const C: usize>(
         pdf: pool.real(l, RealField::Pdf, 0, at),
         specular: has(l, step.flags, flags::SPECULAR),
     };
-    let surface = surfaces(l, model, &ray, &found, &arrival, hit);
+    let surface = surfaces(l, model, &ray, &found, &arrival, &leaving, hit);
     let mut vertex = trace
         .is_some()
         .then(|| step.vertex(l, &ray, &found, &surface, &arrival));

@@ -95,6 +95,13 @@ impl<L: Lanes> Asked<L> {
             inside,
         }
     }
+
+    /// Those that the span does not rule out. A line along the wall of the shape that it goes into
+    /// may pass outside of it, by the rounding of its start; the ray meets it all the same.
+    #[inline(always)]
+    pub fn met(&self, span: &Span<L>) -> L::Mask {
+        (self.all & !span.miss) | self.inside
+    }
 }
 
 /// Picks the crossing that counts: the first one ahead, or the exit for rays that go inward from
@@ -114,7 +121,7 @@ pub(super) fn candidate<L: Lanes>(l: L, span: &Span<L>, asked: &Asked<L>) -> Can
     let leaves = near.high.lt(zero);
     let low = l.select(leaves, far.low, near.low);
     let high = l.select(leaves, far.high, near.high);
-    let possible = asked.all & !(span.miss | high.lt(zero));
+    let possible = asked.met(span) & (!high.lt(zero) | asked.inside);
     Candidate {
         at: Enclosure {
             // The larger of NaN and 0 is 0: what is not known could be anywhere.
@@ -184,7 +191,7 @@ impl<L: Lanes> Search<L> {
         let Some(kind) = shape.kind else { return };
         let asked = Asked::new(l, l.int(k), kind.is_flat(), leaving, asked);
         let span = shape.span(l, ray, asked.all, self.best.high);
-        if !(asked.all & !span.miss).any() {
+        if !asked.met(&span).any() {
             return;
         }
         let c = candidate(l, &span, &asked);
@@ -324,7 +331,7 @@ impl<L: Lanes> Blocks<L> {
         let asked = asked & !shadow.except.same(l.int(k));
         let asked = Asked::new(l, l.int(k), kind.is_flat(), leaving, asked);
         let span = shape.span(l, &shadow.ray, asked.all, shadow.limit);
-        if !(asked.all & !span.miss).any() {
+        if !asked.met(&span).any() {
             return;
         }
         self.take(&candidate(l, &span, &asked), shadow.limit);

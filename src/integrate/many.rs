@@ -106,7 +106,7 @@ impl<N: Lanes> Lone<N> {
         let objects = n.load_int(&balls.objects[from..]);
         let asked = Asked::new(n, objects, false, &self.leaving, balls.present(n, from));
         let span = balls.span(n, from, &self.ray, asked.all, n.splat(limit));
-        if !(asked.all & !span.miss).any() {
+        if !asked.met(&span).any() {
             return None;
         }
         Some((candidate(n, &span, &asked), asked.all, objects))
@@ -129,7 +129,7 @@ impl<N: Lanes> Lone<N> {
                 let flat = kind.is_flat();
                 let asked = Asked::new(n, n.int(k), flat, &self.leaving, n.mask(true));
                 let span = shape.span(n, &self.ray, asked.all, n.splat(limit));
-                if !(asked.all & !span.miss).any() {
+                if !asked.met(&span).any() {
                     return None;
                 }
                 Some(candidate(n, &span, &asked))

@@ -24,6 +24,8 @@ pub mod word {
     pub const EMITS_FRONT: u32 = 1 << 8;
     /// The other side emits.
     pub const EMITS_BACK: u32 = 1 << 9;
+    /// Part of a convex closed shape, whose exits are seen from inside.
+    pub const CLOSED: u32 = 1 << 10;
 }
 
 /// Marks objects that no light stands for.
@@ -90,11 +92,12 @@ impl<T: Scalar> Parts<T> {
         let mut parts = Self::default();
         for (k, (shape, shading)) in shapes.iter().zip(shading).enumerate() {
             parts.first.push(parts.entries.len() as u32);
+            let closed = shape.kind.is_some_and(|kind| !kind.is_flat());
             for part in shape.parts() {
                 parts.entries.push(Entry {
                     object: k as u32,
                     part,
-                    word: word_of(part.kind, shading),
+                    word: word_of(part.kind, shading) | if closed { word::CLOSED } else { 0 },
                     spectrum: shading.spectrum,
                     extinction: shading.extinction,
                     emission: shading.emission.unwrap_or(0),

@@ -1,6 +1,6 @@
 //! What a packet of hits looks like: geometry, appearance, emission.
 
-use super::intersect::{NOTHING, Nearest};
+use super::intersect::{Leaving, NOTHING, Nearest};
 use super::model::{Model, Scatter};
 use super::parts::{Entry, NO_LIGHT, SmallTable, word};
 use super::pool::has;
@@ -67,6 +67,7 @@ pub fn surfaces<L: Lanes>(
     ray: &LaneRay<L>,
     nearest: &Nearest<L>,
     arrival: &Arrival<L>,
+    leaving: &Leaving<L>,
     hit: L::Mask,
 ) -> Surfaces<L> {
     l.vectorize(
@@ -115,7 +116,9 @@ pub fn surfaces<L: Lanes>(
                 emission_weight: l.real(1.0),
             };
             others(l, model, ray, nearest, p, has(word::OTHER), &mut out);
-            let front = out.normal.dot(ray.direction).lt(l.real(0.0));
+            // A chord along the wall is short, and the normals at its ends are rounded.
+            let exits = has(word::CLOSED) & leaving.inward & leaving.object.same(out.object);
+            let front = out.normal.dot(ray.direction).lt(l.real(0.0)) & !exits;
             out.front = hit & front;
             out.emits = (has(word::EMITS_FRONT) & front) | (has(word::EMITS_BACK) & !front);
             checkers(l, model, has(word::CHECKER), &mut out);

@@ -139,6 +139,8 @@ impl<T: Scalar> CylinderLight<T> {
             .mul_add(radius, -(moment * moment))
             .max(zero)
             .sqrt();
+        // Along the wall the chord is not known to better than a rounding of the radius.
+        let root = root.max(a.sqrt() * radius * l.real(T::ROUNDOFF));
         // The nearer crossing from outside, the farther from inside, in whichever form adds.
         let depth = (view.away - radius) * (view.away + radius);
         let near = depth / (root - b);

@@ -233,6 +233,8 @@ impl<L: Lanes> Spheres<L> {
         let ahead = cone.to.dot(direction);
         let foot = cone.to.along(direction, -ahead);
         let half = (radius_squared - foot.length_squared()).max(zero).sqrt();
+        // Along the wall the chord is not known to better than a rounding of the radius.
+        let half = half.max(self.radius * l.real(L::Scalar::ROUNDOFF));
         let depth = (radius_squared - cone.squared).max(zero);
         let t = l.select(ahead.gt(zero), half + ahead, depth / (half - ahead));
         let area = radius_squared * l.real(4.0 * std::f64::consts::PI);

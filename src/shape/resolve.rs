@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::list::{Query, nearest_of, occluded_by};
-use super::{Placed, Ray, ShapeKind, Start, Tally};
+use super::{Hit, Placed, Ray, ShapeKind, Start, Tally};
 
 /// The certified shapes of a scene, by their index among all objects.
 #[derive(Debug, Clone, Default)]
@@ -64,8 +64,18 @@ impl Resolver {
         departure: Departure,
         tally: &mut Tally,
     ) -> Option<Resolved> {
+        let ray = Ray { origin, direction };
+        if let Some(index) = self.gone_into(departure)
+            && self.exit(index, &ray, tally).is_none()
+        {
+            return Some(Resolved {
+                t: 0.0,
+                object: departure.object,
+                part: self.part(index, self.placed[index].inverse().point(origin)),
+            });
+        }
         let query = Query {
-            ray: Ray { origin, direction },
+            ray,
             t_min: 0.0,
             t_max: f64::INFINITY,
         };
@@ -76,13 +86,32 @@ impl Resolver {
             |i| self.priorities[i],
             tally,
         )?;
-        let cube = self.placed[index].kind() == ShapeKind::Cube;
-        let local = hit.local.abs();
         Some(Resolved {
             t: hit.t,
             object: self.objects[index],
-            part: if cube { local.max_position() as u32 } else { 0 },
+            part: self.part(index, hit.local),
         })
+    }
+
+    /// Which part of a shape a point in canonical coordinates is on.
+    fn part(&self, index: usize, local: DVec3) -> u32 {
+        if self.placed[index].kind() == ShapeKind::Cube {
+            local.abs().max_position() as u32
+        } else {
+            0
+        }
+    }
+
+    /// The closed shape that a ray goes into from its own wall.
+    fn gone_into(&self, departure: Departure) -> Option<usize> {
+        let index = self.objects.binary_search(&departure.object).ok()?;
+        (departure.inward && !self.placed[index].kind().is_flat()).then_some(index)
+    }
+
+    /// Where it gets out, at t ≥ 0. Nowhere if rounding has put its start outside by more than the chord is
+    /// deep, along the wall; then it is out where it starts.
+    fn exit(&self, index: usize, ray: &Ray, tally: &mut Tally) -> Option<Hit> {
+        self.placed[index].first_hit(ray, 0.0, Start::OnSurfaceInward, tally)
     }
 
     /// Whether anything but `except` lies strictly between the origin and `t_max`; among the
@@ -101,8 +130,17 @@ impl Resolver {
         except: u32,
         tally: &mut Tally,
     ) -> bool {
+        let ray = Ray { origin, direction };
+        if departure.object != except
+            && let Some(index) = self.gone_into(departure)
+        {
+            let exit = self.exit(index, &ray, tally);
+            if exit.is_none_or(|exit| exit.t < t_max) {
+                return true;
+            }
+        }
         let query = Query {
-            ray: Ray { origin, direction },
+            ray,
             t_min: 0.0,
             t_max,
         };

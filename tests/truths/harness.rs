@@ -6,6 +6,7 @@ use etalon::plan::Plan;
 use etalon::render::session::{Rendered, Request, Unwatched, render as run};
 use etalon::render::tile::Window;
 use etalon::scene::{Overrides, parse};
+use etalon::stats::verdict::{Verdict, judge as judged, standard_errors_needed};
 use etalon::stats::{Estimate, family, student};
 use rayon::prelude::*;
 
@@ -30,19 +31,10 @@ const LAST_ROUND: u64 = 5;
 /// Most samples a pixel to begin with, at the usual sharpness.
 const MOST: f64 = 131_072.0;
 
-/// How many times smaller the errors are to be than usual: `ETALON_TRUTH_SHARPNESS`, for a run that
-/// takes its time (10 takes some hundred times as long).
-pub fn sharpness() -> f64 {
-    let asked = std::env::var("ETALON_TRUTH_SHARPNESS").ok();
-    asked.map_or(1.0, |text| text.parse().unwrap())
-}
-
-/// The numbers asked for, `ETALON_TRUTH_ONLY`: those whose names contain one of these, between
-/// semicolons. They are measured with other samples than among all.
-pub fn only() -> Option<Vec<String>> {
-    let asked = std::env::var("ETALON_TRUTH_ONLY").ok()?;
-    Some(asked.split(';').map(str::to_owned).collect())
-}
+/// What each number is shown to be within by the long run, relative to the truth.
+pub const CLOSE: f64 = 2e-4;
+/// Rounds of it, each with fresh samples and half the error of the one before.
+const ROUNDS: u32 = 3;
 
 /// A number to be measured: (mean of a channel + offset) × factor.
 #[derive(Debug, Clone)]
@@ -122,6 +114,18 @@ impl Measurement {
         (self.value - case.truth) / self.standard_error.max(f64::MIN_POSITIVE)
     }
 
+    /// Whether it is within [`CLOSE`] of the truth, less what rounding and set-up explain.
+    fn verdict(&self, case: &Case, level: f64) -> Verdict {
+        let explained = (ROUNDING + case.systematic) * case.truth.abs();
+        let distance = ((self.value - case.truth).abs() - explained).max(0.0);
+        let difference = Estimate {
+            value: distance,
+            standard_error: self.standard_error,
+            freedom: self.freedom,
+        };
+        judged(&difference, CLOSE * case.truth.abs(), level)
+    }
+
     /// Two-sided p-value of a truth, less what rounding and set-up explain.
     fn p_value(&self, truth: f64, case: &Case) -> f64 {
         let explained = (ROUNDING + case.systematic) * truth.abs();
@@ -178,10 +182,12 @@ fn measure_at(case: &Case, spp: u32, seed: u64) -> Measurement {
 /// Measures with as many samples as pilots that are thrown away ask for, so that the count
 /// favours no outcome. Where few samples see the light the pilots can be wrong about the error;
 /// what is still not sharp is thrown away as well and measured afresh with four times as many.
-pub fn measure(case: &Case, seed: u64) -> Measurement {
-    let goal = (case.wanted * case.truth).abs() / sharpness();
+/// `wanted`: relative standard error.
+fn measure(case: &Case, wanted: f64, seed: u64) -> Measurement {
+    let goal = (wanted * case.truth).abs();
+    let sharpness = WANTED_ERROR / wanted;
     // Points are counted in 24 bits.
-    let most = (MOST * sharpness() * sharpness()).min(f64::from(1 << 23));
+    let most = (MOST * sharpness * sharpness).min(f64::from(1 << 23));
     let mut spp = PILOT;
     for pilot in 0..2 {
         let m = measure_at(case, spp, seed + pilot);
@@ -204,22 +210,49 @@ pub fn measure(case: &Case, seed: u64) -> Measurement {
     }
 }
 
+/// Seeds of a number by its place in the list.
+const SEEDS_EACH: u64 = 1000;
+
 /// Measures all, on the threads of the pool.
-pub fn measure_all(mut cases: Vec<Case>) -> Vec<(Case, Measurement)> {
-    let only = only();
-    if let Some(names) = &only {
-        cases.retain(|case| names.iter().any(|name| case.name.contains(name)));
-    }
-    // Seeds below are those of the run over all numbers.
-    let first = u64::from(only.is_some()) << 32;
+pub fn measure_all(cases: Vec<Case>) -> Vec<(Case, Measurement)> {
     cases
         .into_par_iter()
         .enumerate()
         .map(|(i, case)| {
-            let m = measure(&case, first + 1000 * i as u64);
+            let m = measure(&case, case.wanted, SEEDS_EACH * i as u64);
             (case, m)
         })
         .collect()
+}
+
+/// What the long run says of a number.
+pub struct Shown {
+    pub measurement: Measurement,
+    pub verdict: Verdict,
+    pub round: u32,
+}
+
+/// Shows a number to be within [`CLOSE`] of the truth, or off, or neither, at a level shared by
+/// `count` numbers; the samples have none in common with those of [`measure_all`].
+pub fn show(case: &Case, place: usize, count: usize) -> Shown {
+    let level = FALSE_ALARM / count as f64 / f64::from(ROUNDS);
+    // Degrees of freedom are as many as pixels, where Student's law is nearly normal.
+    let first = CLOSE / standard_errors_needed(level, f64::INFINITY);
+    let mut round = 0;
+    loop {
+        let wanted = first / f64::from(1 << round);
+        round += 1;
+        let seed = u64::from(round) << 32 | SEEDS_EACH * place as u64;
+        let measurement = measure(case, wanted, seed);
+        let verdict = measurement.verdict(case, level);
+        if verdict != Verdict::Inconclusive || round == ROUNDS {
+            return Shown {
+                measurement,
+                verdict,
+                round,
+            };
+        }
+    }
 }
 
 /// The numbers that Holm's step-down procedure (Holm 1979) rejects.

@@ -3,8 +3,7 @@
 //! `tests/data/truths.json` holds families of set-ups with their parameters and exact answers.
 //! Every family is a function of its parameters: it builds the scenes, says which number of the
 //! file each one must give, and works the closed form out once more where that is short. The
-//! environment variable `ETALON_TRUTHS` names another file of the same form, `ETALON_TRUTH_SHARPNESS`
-//! makes all errors so many times smaller, `ETALON_TRUTH_ONLY` takes some of the numbers.
+//! environment variable `ETALON_TRUTHS` names another file of the same form.
 
 #![allow(
     clippy::unwrap_used,
@@ -22,10 +21,12 @@ mod white;
 
 use std::sync::OnceLock;
 
+use etalon::stats::verdict::Verdict;
+use rayon::prelude::*;
 use serde_json::Value;
 
 use crate::truth_file::{list, number, truth};
-use harness::{Case, Measurement, judge, measure_all, sharpness};
+use harness::{CLOSE, Case, Measurement, judge, measure_all, show};
 
 fn numbers(value: &Value) -> Vec<f64> {
     list(value).iter().map(number).collect()
@@ -44,16 +45,18 @@ fn agree(own: f64, exact: f64) {
 /// All numbers with what was measured for them, once for all tests.
 fn measured() -> &'static [(Case, Measurement)] {
     static MEASURED: OnceLock<Vec<(Case, Measurement)>> = OnceLock::new();
-    MEASURED.get_or_init(|| {
-        let cases = [
-            furnaces::cases(),
-            lights::cases(),
-            glass::cases(),
-            cameras::cases(),
-            white::cases(),
-        ];
-        measure_all(cases.into_iter().flatten().collect())
-    })
+    MEASURED.get_or_init(|| measure_all(cases()))
+}
+
+fn cases() -> Vec<Case> {
+    let families = [
+        furnaces::cases(),
+        lights::cases(),
+        glass::cases(),
+        cameras::cases(),
+        white::cases(),
+    ];
+    families.into_iter().flatten().collect()
 }
 
 #[test]
@@ -88,12 +91,54 @@ fn every_truth_is_met() {
     );
     let wide: Vec<&str> = measured
         .iter()
-        .filter(|(case, m)| m.standard_error * sharpness() > harness::LARGEST_ERROR * case.truth)
+        .filter(|(case, m)| m.standard_error > harness::LARGEST_ERROR * case.truth)
         .map(|(case, _)| case.name.as_str())
         .collect();
     assert!(wide.is_empty(), "not measured sharply enough: {wide:?}");
     let rejected = judge(measured.iter().map(|(case, m)| (m, case.truth, case)));
     assert!(rejected.is_empty(), "rejected: {rejected:#?}");
+}
+
+/// Each number is *shown* to be within 0.02 % of the truth, at a family-wise level of 1e-3: where
+/// samples leave that open, fresh and more of them decide, up to three times.
+#[test]
+#[ignore = "takes the better part of an hour"]
+fn every_truth_is_met_within_two_hundredths_of_a_per_cent() {
+    let cases = cases();
+    let count = cases.len();
+    let numbers: Vec<(String, Verdict)> = cases
+        .into_par_iter()
+        .enumerate()
+        .map(|(place, case)| {
+            let shown = show(&case, place, count);
+            let m = shown.measurement;
+            println!(
+                "{:<58} {:>+9.5} % ± {:.5} %, {:?} in round {} with {} paths",
+                case.name,
+                100.0 * (m.value / case.truth - 1.0),
+                100.0 * m.standard_error / case.truth,
+                shown.verdict,
+                shown.round,
+                m.samples,
+            );
+            (case.name, shown.verdict)
+        })
+        .collect();
+    let those = |verdict: Verdict| -> Vec<&str> {
+        let of = numbers.iter().filter(|(_, v)| *v == verdict);
+        of.map(|(name, _)| name.as_str()).collect()
+    };
+    let (off, open) = (those(Verdict::Fail), those(Verdict::Inconclusive));
+    println!(
+        "{} of {count} numbers are shown to be within {} % of the truth",
+        those(Verdict::Pass).len(),
+        100.0 * CLOSE,
+    );
+    assert!(off.is_empty(), "shown to be off: {off:?}");
+    assert!(
+        open.is_empty(),
+        "neither shown to be within nor off: {open:?}"
+    );
 }
 
 /// Half a per cent of bias in any one number is seen, in either direction.

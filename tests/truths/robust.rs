@@ -70,6 +70,37 @@ fn a_closed_box_lets_no_light_in() {
     }
 }
 
+/// Camera paths of a pixel that bounce about a closed room ten times each: of 20 million bounces a few
+/// go along a wall so closely that rounding would put their start outside.
+const MANY: u32 = 512;
+
+#[test]
+fn many_bounces_along_its_walls_find_no_way_out_of_a_room() {
+    let maps = [
+        [10.0 * DVec3::X, 10.0 * DVec3::Y, 9.0 * DVec3::Z],
+        [7.0 * DVec3::X, 10.0 * DVec3::Y, 12.0 * DVec3::Z],
+        [
+            DVec3::new(9.0, 1.0, 0.0),
+            DVec3::new(-3.0, 8.0, 2.0),
+            DVec3::new(0.5, 1.0, 11.0),
+        ],
+    ];
+    let light = Text::perspective(DVec3::new(0.3, -0.2, 5.0), DVec3::NEG_Z, 50.0)
+        .size([64, 64])
+        .material("wall", "diffuse = 0.9")
+        .image("precision = \"f32\"")
+        .environment(100.0)
+        .directional(DVec3::new(0.5, 0.3, 0.8), 100.0);
+    for shape in ["sphere = {}", "cube = {}", "cylinder = {}"] {
+        for map in maps {
+            let text = light.clone().placed(shape, "wall", map, DVec3::ZERO);
+            let rendered = render(&text, MANY, 6, None);
+            let lit = rendered.xyz().iter().filter(|e| e.mean[1] != 0.0).count();
+            assert_eq!(lit, 0, "{shape} {map:?}: {lit} pixels see light");
+        }
+    }
+}
+
 #[test]
 fn nothing_arrives_short_of_the_rainbow() {
     let t = truth("rainbow");
