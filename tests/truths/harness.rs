@@ -242,7 +242,7 @@ pub fn show(case: &Case, place: usize, count: usize) -> Shown {
     loop {
         let wanted = first / f64::from(1 << round);
         round += 1;
-        let seed = u64::from(round) << 32 | SEEDS_EACH * place as u64;
+        let seed = (u64::from(round) << 32) | (SEEDS_EACH * place as u64);
         let measurement = measure(case, wanted, seed);
         let verdict = measurement.verdict(case, level);
         if verdict != Verdict::Inconclusive || round == ROUNDS {
