@@ -213,6 +213,23 @@ def closed_lights():
 
 
 @finding
+def near_shadows():
+    """Points of a floor under a card at some height, a lamp above: share whose shadow ray sees the lamp."""
+    random = np.random.default_rng(2)
+    places = random.uniform(-1, 1, (RAYS, 2))
+    cells = []
+    for height in (1e-5, 1e-4, 2e-4, 3e-4, 1e-3):
+        card = transform(np.diag([2, 2, 1, 1.0]) + np.outer([0, 0, height, 0], [0, 0, 0, 1]))
+        floor = {"type": "rectangle", "to_world": transform(np.diag([2, 2, 1, 1.0]))}
+        scene = mi.load_dict({"type": "scene", "card": {"type": "rectangle", "to_world": card}, "floor": floor})
+        origins = np.column_stack([places, np.full(RAYS, height / 2)]).T.astype(np.float32)
+        seen = scene.ray_intersect(mi.Ray3f(mi.Point3f(*origins), mi.Vector3f(0, 0, -1)))
+        hidden = np.array(scene.ray_test(seen.spawn_ray_to(mi.Point3f(0, 0, 3))))
+        cells.append(f"{height:g}: {1 - hidden.mean():.0%}")
+    return ", ".join(cells) + " (0 is right)"
+
+
+@finding
 def mirrored_spheres():
     """A diffuse ball of albedo 0.5 under a reflection, in light from everywhere."""
     bsdf = {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": {"type": "uniform", "value": 0.5}}}
