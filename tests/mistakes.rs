@@ -19,7 +19,7 @@ const RUNS: u64 = 2;
 fn planted_mistakes_are_caught() {
     let suite = Suite::new();
     print!("{}", suite.text());
-    for (place, (mistake, words)) in MISTAKES.into_iter().enumerate() {
+    for (place, &(mistake, words)) in MISTAKES.iter().enumerate() {
         for run in 0..RUNS {
             let run = suite.run(Some(mistake), (place as u64 + 1) << 20 | run);
             assert!(run.planted > 0, "there was no place for {words}");

@@ -176,6 +176,9 @@ pub struct Model<T: Scalar> {
     pub spectra: SpectrumBank<T>,
     /// Decides what lanes cannot.
     pub resolver: Resolver,
+    /// A deliberate mistake.
+    #[cfg(feature = "planted")]
+    pub planted: Option<super::planted::Planted>,
 }
 
 impl<T: Scalar> Model<T> {

@@ -124,12 +124,16 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         );
         let table = self.model.spectra.rows::<C>();
         let cosines = array(l, cosine);
+        #[cfg(not(feature = "planted"))]
+        let reflected = fresnel::conductor::<L::Scalar>;
+        #[cfg(feature = "planted")]
+        let reflected = super::planted::reflectance(self.model.planted);
         for i in each(m.bits()) {
             let n = table[indices[i] as usize];
             let k = table[extinctions[i] as usize];
             let mut reflectance = n;
             for c in 0..C {
-                reflectance[c] = fresnel::conductor(cosines[i], n[c], k[c]);
+                reflectance[c] = reflected(cosines[i], n[c], k[c]);
             }
             self.multiply(i, &reflectance);
         }
@@ -265,6 +269,8 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let ratio = cosine_hemisphere_pdf(l, cosine) / pdf;
         let shared = ratio / ratio.mul_add(ratio, l.real(1.0));
         let weight = l.select(extended, shared, ratio);
+        #[cfg(feature = "planted")]
+        let weight = super::planted::light_weight(l, model.planted, weight, cosine);
         let asked = diffuse & valid & cosine.gt(zero) & weight.gt(zero);
         let mut lit = Lit {
             spectrum,

@@ -28,6 +28,13 @@ pub fn dielectric<L: Lanes>(l: L, cosine: L::Real, eta: L::Real) -> (L::Real, L:
 /// on Fresnel equations", 2013).
 #[inline(always)]
 pub fn conductor<T: Scalar>(cosine: T, n: T, k: T) -> T {
+    let [s, p] = conductor_polarised(cosine, n, k);
+    (s + p) * T::from_f64(0.5)
+}
+
+/// The same for light polarised perpendicularly and parallel to the plane of incidence.
+#[inline(always)]
+pub fn conductor_polarised<T: Scalar>(cosine: T, n: T, k: T) -> [T; 2] {
     let number = T::from_f64;
     let one = number(1.0);
     let c2 = cosine * cosine;
@@ -43,7 +50,7 @@ pub fn conductor<T: Scalar>(cosine: T, n: T, k: T) -> T {
     let t3 = c2.fused(sum, s2 * s2);
     let t4 = t2 * s2;
     let p = s * ((t3 - t4) / (t3 + t4));
-    (s + p) * number(0.5)
+    [s, p]
 }
 
 /// Reflectance at a dielectric interface for one value, as [`dielectric`].

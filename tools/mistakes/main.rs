@@ -48,7 +48,7 @@ fn main() -> ExitCode {
     print!("{}", suite.text());
     let mut good = true;
     println!("\n| planted mistake | caught | standard errors, median | by |\n|---|---|---|---|");
-    for (place, (mistake, words)) in MISTAKES.into_iter().enumerate() {
+    for (place, &(mistake, words)) in MISTAKES.iter().enumerate() {
         let seed = |run: u64| arguments.seed << 32 | (place as u64 + 1) << 20 | run;
         let runs: Vec<Run> = (0..arguments.runs)
             .map(|run| suite.run(Some(mistake), seed(run)))

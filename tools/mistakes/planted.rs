@@ -2,11 +2,14 @@
 //!
 //! Where a mistake is a factor that depends on the direction, it is planted in a scene where all
 //! directions are alike, so that the tables can hold exactly what the wrong code would compute: the
-//! cosine under parallel light, the Fresnel term under one angle of incidence.
+//! cosine under parallel light, the Fresnel term under one angle of incidence. With the feature `planted`
+//! both are also planted in the loop itself, where scenes may have all directions.
 
 use etalon::camera::LaneCamera;
 use etalon::integrate::model::{Model, Scatter};
 use etalon::integrate::parts::Parts;
+#[cfg(feature = "planted")]
+use etalon::integrate::planted::Planted;
 use etalon::light::{LightShape, SmallLights};
 use etalon::material::fresnel;
 use etalon::math::lanes::Scalar;
@@ -33,10 +36,13 @@ pub enum Mistake {
     Normals,
     /// The lights are believed to be chosen with equal probability.
     LightChoice,
+    /// One in the loop itself.
+    #[cfg(feature = "planted")]
+    Loop(Planted),
 }
 
 /// All of them, with the words of the table.
-pub const MISTAKES: [(Mistake, &str); 8] = [
+pub const MISTAKES: &[(Mistake, &str)] = &[
     (
         Mistake::Reflectance,
         "a reflectance 0.5 % too high in one material",
@@ -53,6 +59,16 @@ pub const MISTAKES: [(Mistake, &str); 8] = [
     (
         Mistake::LightChoice,
         "lights chosen with another probability than believed",
+    ),
+    #[cfg(feature = "planted")]
+    (
+        Mistake::Loop(Planted::Cosine),
+        "cosine forgotten in direct light, from all directions",
+    ),
+    #[cfg(feature = "planted")]
+    (
+        Mistake::Loop(Planted::Polarisation),
+        "Fresnel term with one polarisation counted twice, at all angles",
     ),
 ];
 
@@ -86,6 +102,14 @@ fn planted<T: Scalar>(mistake: Mistake, scene: &Scene, model: &mut Model<T>) -> 
         }
         Mistake::Normals => normals(scene, model),
         Mistake::LightChoice => light_choice(model),
+        #[cfg(feature = "planted")]
+        Mistake::Loop(mistake) => {
+            model.planted = Some(mistake);
+            match mistake {
+                Planted::Cosine => !model.lights.is_empty(),
+                Planted::Polarisation => model.needs.conductor,
+            }
+        }
     }
 }
 
@@ -150,10 +174,13 @@ fn cosine<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
     found
 }
 
-/// All rays meet the scene's metal at [`INCIDENCE`].
+/// All rays meet the metal, the scene's only object, at [`INCIDENCE`].
 fn polarisation<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
     let cosine = INCIDENCE.to_radians().cos();
     let mut found = false;
+    if scene.objects.len() != 1 {
+        return false;
+    }
     for object in 0..model.shading.len() {
         let material = &scene.materials[model.shading[object].material as usize].value;
         let Surface::Conductor(index) = &material.surface else {
@@ -163,10 +190,8 @@ fn polarisation<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
             .into_iter()
             .map(|nm| {
                 let (n, k) = index.n_k(nm);
-                let mean = fresnel::conductor(cosine, n, k);
-                let s = perpendicular(cosine, n, k);
-                // s and p average to the mean; with s twice, (2 s + p)/3.
-                (2.0 * mean + s) / 3.0
+                let [s, p] = fresnel::conductor_polarised(cosine, n, k);
+                (2.0 * s + p) / 3.0
             })
             .collect();
         model.shading[object].spectrum = model.spectra.push(&values);
@@ -178,15 +203,6 @@ fn polarisation<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
         refresh(model);
     }
     found
-}
-
-/// Reflectance of a metal for light polarised perpendicularly to the plane of incidence:
-/// |cos θ − √((n + ik)² − sin² θ)|²/|cos θ + √…|².
-fn perpendicular(cosine: f64, n: f64, k: f64) -> f64 {
-    let (re, im) = (n * n - k * k - (1.0 - cosine * cosine), 2.0 * n * k);
-    let size = re.hypot(im);
-    let (a, b) = (((size + re) / 2.0).sqrt(), ((size - re) / 2.0).sqrt());
-    ((cosine - a).powi(2) + b * b) / ((cosine + a).powi(2) + b * b)
 }
 
 /// Dividing by a density that is wrong multiplies every contribution by the ratio; each one is linear

@@ -11,6 +11,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("closed room", CLOSED_ROOM),
     ("slanting sun", SLANTING_SUN),
     ("metal at 60 degrees", METAL),
+    ("metal balls", METAL_BALLS),
     ("blurred spot", BLURRED_SPOT),
     ("five segments", FIVE_SEGMENTS),
     ("sheared cards", SHEARED_CARDS),
@@ -75,6 +76,28 @@ metal = { mirror = "Al" }
 shape = { rectangle = { size = [10, 10] } }
 material = "metal"
 transform = [{ rotate_y = 60 }]
+"#;
+
+/// Metal under all angles.
+const METAL_BALLS: &str = r#"
+environment = "D65"
+[camera]
+from = [0, 0, 6]
+to = [0, 0, 0]
+fov = 24
+[image]
+size = [24, 24]
+spp = 1
+max_depth = 3
+[materials]
+aluminium = { mirror = "Al" }
+copper = { mirror = "Cu" }
+[[object]]
+shape = { sphere = { radius = 0.6, center = [-0.6, 0, 0] } }
+material = "aluminium"
+[[object]]
+shape = { sphere = { radius = 0.6, center = [0.6, 0, 0] } }
+material = "copper"
 "#;
 
 /// A lamp far behind the plane of focus: a spot whose area grows as the radius squared. The picture

@@ -1,0 +1,42 @@
+//! Deliberate mistakes in the loop itself, to see whether the statistical suite notices them: only
+//! in builds with the feature `planted`, which the renderer that ships has not.
+
+use crate::material::fresnel;
+use crate::math::lanes::{Lanes, Real, Scalar};
+
+/// What is done wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Planted {
+    /// Direct light on a diffuse surface lacks the cosine.
+    Cosine,
+    /// Conductors count the perpendicular polarisation twice.
+    Polarisation,
+}
+
+/// The weight of sampled light at a surface that it meets under `cosine`.
+#[inline(always)]
+pub fn light_weight<L: Lanes>(
+    l: L,
+    planted: Option<Planted>,
+    weight: L::Real,
+    cosine: L::Real,
+) -> L::Real {
+    if planted == Some(Planted::Cosine) {
+        // Along the surface the factor would have no bound.
+        weight / cosine.max(l.real(0.01))
+    } else {
+        weight
+    }
+}
+
+/// The reflectance of a conductor, as a function of cosine, n and k.
+pub fn reflectance<T: Scalar>(planted: Option<Planted>) -> impl Fn(T, T, T) -> T {
+    move |cosine, n, k| {
+        let [s, p] = fresnel::conductor_polarised(cosine, n, k);
+        if planted == Some(Planted::Polarisation) {
+            (s + s + p) * T::from_f64(1.0 / 3.0)
+        } else {
+            (s + p) * T::from_f64(0.5)
+        }
+    }
+}
