@@ -121,7 +121,7 @@ pub(super) fn candidate<L: Lanes>(l: L, span: &Span<L>, asked: &Asked<L>) -> Can
     let leaves = near.high.lt(zero);
     let low = l.select(leaves, far.low, near.low);
     let high = l.select(leaves, far.high, near.high);
-    let possible = asked.met(span) & (!high.lt(zero) | asked.inside);
+    let possible = (asked.all & !(span.miss | high.lt(zero))) | asked.inside;
     Candidate {
         at: Enclosure {
             // The larger of NaN and 0 is 0: what is not known could be anywhere.

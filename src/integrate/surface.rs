@@ -116,9 +116,12 @@ pub fn surfaces<L: Lanes>(
                 emission_weight: l.real(1.0),
             };
             others(l, model, ray, nearest, p, has(word::OTHER), &mut out);
+            let mut front = out.normal.dot(ray.direction).lt(l.real(0.0));
             // A chord along the wall is short, and the normals at its ends are rounded.
-            let exits = has(word::CLOSED) & leaving.inward & leaving.object.same(out.object);
-            let front = out.normal.dot(ray.direction).lt(l.real(0.0)) & !exits;
+            let exits = front & leaving.inward & leaving.object.same(out.object);
+            if exits.any() {
+                front = front & !(exits & has(word::CLOSED));
+            }
             out.front = hit & front;
             out.emits = (has(word::EMITS_FRONT) & front) | (has(word::EMITS_BACK) & !front);
             checkers(l, model, has(word::CHECKER), &mut out);

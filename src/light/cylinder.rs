@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Towards, vector};
+use super::{Towards, combined, products, vector};
 use crate::math::functions::sin_cos_turns;
 use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::vec3::Vec3;
@@ -76,21 +76,10 @@ impl<T: Scalar> CylinderLight<T> {
         }
     }
 
-    /// Coordinates of a vector along the axes.
-    #[inline(always)]
-    fn local<L: Lanes<Scalar = T>>(&self, l: L, v: Vec3<L::Real>) -> Vec3<L::Real> {
-        let [x, y, z] = &self.axes;
-        Vec3::new(
-            v.dot(vector(l, x)),
-            v.dot(vector(l, y)),
-            v.dot(vector(l, z)),
-        )
-    }
-
     #[inline(always)]
     fn view<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> View<L> {
         let zero = l.real(0.0);
-        let q = self.local(l, p - vector(l, &self.centre));
+        let q = products(l, &self.axes, p - vector(l, &self.centre));
         let (radius, height) = (l.splat(self.radius), l.splat(self.half_height));
         let squared = q.x.mul_add(q.x, q.y * q.y);
         let away = squared.sqrt();
@@ -130,7 +119,7 @@ impl<T: Scalar> CylinderLight<T> {
     ) -> L::Real {
         let zero = l.real(0.0);
         let (radius, height) = (l.splat(self.radius), l.splat(self.half_height));
-        let d = self.local(l, direction);
+        let d = products(l, &self.axes, direction);
         let q = view.q;
         let a = d.x.mul_add(d.x, d.y * d.y);
         let b = q.x.mul_add(d.x, q.y * d.y);
@@ -216,11 +205,7 @@ impl<T: Scalar> CylinderLight<T> {
                 let to = Vec3::new(to.x, to.y, level - view.q.z);
                 let distance = to.length_squared().sqrt();
                 let to = to.scale(one / distance);
-                let [x, y, z] = &self.axes;
-                let direction = vector(l, x)
-                    .scale(to.x)
-                    .along(vector(l, y), to.y)
-                    .along(vector(l, z), to.z);
+                let direction = combined(l, &self.axes, to);
                 let towards = Towards {
                     direction,
                     distance,

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DVec3};
 
-use super::{CylinderLight, SphereLight, Towards, vector};
+use super::{CylinderLight, SphereLight, Towards, combined, products, vector};
 use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::vec3::Vec3;
 
@@ -75,18 +75,7 @@ impl<T: Scalar> MappedLight<T> {
     /// The receiver's preimage.
     #[inline(always)]
     fn preimage<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> Vec3<L::Real> {
-        self.back(l, p - vector(l, &self.centre))
-    }
-
-    /// M⁻¹v.
-    #[inline(always)]
-    fn back<L: Lanes<Scalar = T>>(&self, l: L, v: Vec3<L::Real>) -> Vec3<L::Real> {
-        let [x, y, z] = &self.inverse;
-        Vec3::new(
-            v.dot(vector(l, x)),
-            v.dot(vector(l, y)),
-            v.dot(vector(l, z)),
-        )
+        products(l, &self.inverse, p - vector(l, &self.centre))
     }
 
     /// The canonical direction of a unit vector, and what the map makes of a density there: with
@@ -97,7 +86,7 @@ impl<T: Scalar> MappedLight<T> {
         l: L,
         direction: Vec3<L::Real>,
     ) -> (Vec3<L::Real>, L::Real) {
-        let back = self.back(l, direction);
+        let back = products(l, &self.inverse, direction);
         let squared = back.length_squared();
         let length = squared.sqrt();
         let factor = l.splat(self.shrinking) / (squared * length);
@@ -123,11 +112,7 @@ impl<T: Scalar> MappedLight<T> {
                         (towards, Some(part))
                     }
                 };
-                let [x, y, z] = &self.linear;
-                let along = vector(l, x)
-                    .scale(towards.direction.x)
-                    .along(vector(l, y), towards.direction.y)
-                    .along(vector(l, z), towards.direction.z);
+                let along = combined(l, &self.linear, towards.direction);
                 let stretch = along.length_squared().sqrt();
                 let direction = along.scale(l.real(1.0) / stretch);
                 // Both strategies are to see the density of this very direction.
@@ -167,12 +152,7 @@ impl<T: Scalar> MappedLight<T> {
                     Canonical::Sphere(sphere) => sphere.pdf(l, q, back),
                     Canonical::Cylinder(cylinder) => {
                         // Normals are mapped by the inverse's transpose, so back by the transpose.
-                        let [x, y, z] = &self.linear;
-                        let normal = Vec3::new(
-                            normal.dot(vector(l, x)),
-                            normal.dot(vector(l, y)),
-                            normal.dot(vector(l, z)),
-                        );
+                        let normal = products(l, &self.linear, normal);
                         cylinder.pdf(l, q, back, normal.normalized(l))
                     }
                 };

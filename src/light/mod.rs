@@ -229,6 +229,27 @@ fn vector<L: Lanes>(l: L, v: &[L::Scalar; 3]) -> Vec3<L::Real> {
     Vec3::new(l.splat(v[0]), l.splat(v[1]), l.splat(v[2]))
 }
 
+/// Dot products of a vector with three: a matrix of these rows times the vector.
+#[inline(always)]
+fn products<L: Lanes>(l: L, rows: &[[L::Scalar; 3]; 3], v: Vec3<L::Real>) -> Vec3<L::Real> {
+    let [x, y, z] = rows;
+    Vec3::new(
+        v.dot(vector(l, x)),
+        v.dot(vector(l, y)),
+        v.dot(vector(l, z)),
+    )
+}
+
+/// The sum of three vectors, each times a component of `v`: a matrix of these columns times v.
+#[inline(always)]
+fn combined<L: Lanes>(l: L, columns: &[[L::Scalar; 3]; 3], v: Vec3<L::Real>) -> Vec3<L::Real> {
+    let [x, y, z] = columns;
+    vector(l, x)
+        .scale(v.x)
+        .along(vector(l, y), v.y)
+        .along(vector(l, z), v.z)
+}
+
 /// Direction, distance and density for a point chosen uniformly on a plane area, `to` away from
 /// the receiver, with the sides that emit; `height` is the plane's, along its normal.
 #[inline(always)]

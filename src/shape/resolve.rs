@@ -65,7 +65,20 @@ impl Resolver {
         tally: &mut Tally,
     ) -> Option<Resolved> {
         let ray = Ray { origin, direction };
+        let query = Query {
+            ray,
+            t_min: 0.0,
+            t_max: f64::INFINITY,
+        };
+        let found = nearest_of(
+            self.chosen(candidates),
+            &query,
+            |i| self.start(i, departure),
+            |i| self.priorities[i],
+            tally,
+        );
         if let Some(index) = self.gone_into(departure)
+            && found.as_ref().is_none_or(|(found, _)| *found != index)
             && self.exit(index, &ray, tally).is_none()
         {
             return Some(Resolved {
@@ -74,18 +87,7 @@ impl Resolver {
                 part: self.part(index, self.placed[index].inverse().point(origin)),
             });
         }
-        let query = Query {
-            ray,
-            t_min: 0.0,
-            t_max: f64::INFINITY,
-        };
-        let (index, hit) = nearest_of(
-            self.chosen(candidates),
-            &query,
-            |i| self.start(i, departure),
-            |i| self.priorities[i],
-            tally,
-        )?;
+        let (index, hit) = found?;
         Some(Resolved {
             t: hit.t,
             object: self.objects[index],
@@ -131,14 +133,6 @@ impl Resolver {
         tally: &mut Tally,
     ) -> bool {
         let ray = Ray { origin, direction };
-        if departure.object != except
-            && let Some(index) = self.gone_into(departure)
-        {
-            let exit = self.exit(index, &ray, tally);
-            if exit.is_none_or(|exit| exit.t < t_max) {
-                return true;
-            }
-        }
         let query = Query {
             ray,
             t_min: 0.0,
@@ -151,7 +145,17 @@ impl Resolver {
                 self.start(i, departure)
             }
         };
-        occluded_by(self.chosen(candidates), &query, start, tally)
+        if occluded_by(self.chosen(candidates), &query, start, tally) {
+            return true;
+        }
+        // What is beyond the exit from one's own shape is hidden, also where that is not ahead.
+        match self.gone_into(departure) {
+            Some(index) if departure.object != except => {
+                let exit = self.exit(index, &ray, tally);
+                exit.is_none_or(|exit| exit.t < t_max)
+            }
+            _ => false,
+        }
     }
 
     fn start(&self, index: usize, departure: Departure) -> Start {
