@@ -145,7 +145,7 @@ impl<T: Scalar> CylinderLight<T> {
     }
 
     /// A direction from p.
-    #[inline(always)]
+    #[inline(never)]
     pub fn sample<L: Lanes<Scalar = T>>(
         &self,
         l: L,
