@@ -193,6 +193,10 @@ class Builder:
             side = "back" if "flip_normals" in extra else "front"
             parts[CURVED_PART[place.kind]] = meshes.light(place, side, bsdf["bsdf"], extra["emitter"])
         elif place.kind == "sphere" and not meshes.is_circular(place):
+            if not mi.variant().startswith("scalar"):
+                warnings.warn(
+                    f"{place.name}: ellipsoids are too dark in {mi.variant()}, see `needs_double`", stacklevel=2
+                )
             group = {"type": "shapegroup", "shape": {"type": "sphere"} | bsdf}
             reference = {"type": "ref", "id": f"{key}_group"}
             instance = {"type": "instance", "to_world": transform(to_world), "group": reference}
