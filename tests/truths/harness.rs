@@ -6,7 +6,6 @@ use etalon::plan::Plan;
 use etalon::render::session::{Rendered, Request, Unwatched, render as run};
 use etalon::render::tile::Window;
 use etalon::scene::{Overrides, parse};
-use etalon::stats::verdict::{Verdict, judge as judged, standard_errors_needed};
 use etalon::stats::{Estimate, family, student};
 use rayon::prelude::*;
 
@@ -33,8 +32,13 @@ const MOST: f64 = 131_072.0;
 
 /// What each number is shown to be within by the long run, relative to the truth.
 pub const CLOSE: f64 = 2e-4;
+/// Confidence intervals of the long run miss the truth with this probability.
+const MISSED: f64 = 0.05;
 /// Rounds of it, each with fresh samples and half the error of the one before.
 const ROUNDS: u32 = 3;
+/// Samples from which pixels have more than two replicates, which then cost nothing: an interval is
+/// wide where its error is hardly known.
+const PLENTY: u32 = 1 << 16;
 
 /// A number to be measured: (mean of a channel + offset) × factor.
 #[derive(Debug, Clone)]
@@ -114,16 +118,13 @@ impl Measurement {
         (self.value - case.truth) / self.standard_error.max(f64::MIN_POSITIVE)
     }
 
-    /// Whether it is within [`CLOSE`] of the truth, less what rounding and set-up explain.
-    fn verdict(&self, case: &Case, level: f64) -> Verdict {
+    /// Whether its confidence interval lies within [`CLOSE`] of the truth, less what rounding and set-up
+    /// explain.
+    fn is_close(&self, case: &Case) -> bool {
         let explained = (ROUNDING + case.systematic) * case.truth.abs();
         let distance = ((self.value - case.truth).abs() - explained).max(0.0);
-        let difference = Estimate {
-            value: distance,
-            standard_error: self.standard_error,
-            freedom: self.freedom,
-        };
-        judged(&difference, CLOSE * case.truth.abs(), level)
+        let margin = student::critical(MISSED, self.freedom) * self.standard_error;
+        distance + margin <= CLOSE * case.truth.abs()
     }
 
     /// Two-sided p-value of a truth, less what rounding and set-up explain.
@@ -155,12 +156,17 @@ pub fn render(text: &Text, spp: u32, seed: u64, window: Option<Window>) -> Rende
     rendered
 }
 
-/// Mean of a channel over some pixels, with its standard error from their two replicates: pixels
-/// are scrambled independently, and each variance has one degree of freedom.
-pub fn mean(estimates: &[[f64; 2]]) -> Estimate {
+/// Mean of a channel over some pixels, with its standard error from their replicates: pixels are
+/// scrambled independently.
+pub fn mean(estimates: &[[f64; 2]], spp: u32) -> Estimate {
     let values: Vec<f64> = estimates.iter().map(|[value, _]| *value).collect();
     let variances: Vec<f64> = estimates.iter().map(|[_, error]| error * error).collect();
-    Estimate::mean_of(&values, &variances, 1.0)
+    Estimate::mean_of(&values, &variances, f64::from(replicates(spp) - 1))
+}
+
+/// Replicates of a pixel.
+pub fn replicates(spp: u32) -> u32 {
+    if spp < PLENTY { 2 } else { 8 }
 }
 
 fn measure_at(case: &Case, spp: u32, seed: u64) -> Measurement {
@@ -170,7 +176,7 @@ fn measure_at(case: &Case, spp: u32, seed: u64) -> Measurement {
         .iter()
         .map(|e| [e.mean[case.channel], e.standard_error[case.channel]])
         .collect();
-    let mean = mean(&estimates);
+    let mean = mean(&estimates, spp);
     Measurement {
         value: (mean.value + case.offset) * case.factor,
         standard_error: mean.standard_error * case.factor.abs(),
@@ -228,27 +234,26 @@ pub fn measure_all(cases: Vec<Case>) -> Vec<(Case, Measurement)> {
 /// What the long run says of a number.
 pub struct Shown {
     pub measurement: Measurement,
-    pub verdict: Verdict,
+    pub close: bool,
     pub round: u32,
 }
 
-/// Shows a number to be within [`CLOSE`] of the truth, or off, or neither, at a level shared by
-/// `count` numbers; the samples have none in common with those of [`measure_all`].
-pub fn show(case: &Case, place: usize, count: usize) -> Shown {
-    let level = FALSE_ALARM / count as f64 / f64::from(ROUNDS);
-    // Degrees of freedom are as many as pixels, where Student's law is nearly normal.
-    let first = CLOSE / standard_errors_needed(level, f64::INFINITY);
+/// Measures a number until its confidence interval lies within [`CLOSE`] of the truth, with fresh and
+/// more samples in every round, and none in common with those of [`measure_all`].
+pub fn show(case: &Case, place: usize) -> Shown {
+    // Half of the interval, and as much again for what the estimate is off itself.
+    let first = CLOSE / (2.0 * student::critical(MISSED, f64::INFINITY));
     let mut round = 0;
     loop {
         let wanted = first / f64::from(1 << round);
         round += 1;
         let seed = (u64::from(round) << 32) | (SEEDS_EACH * place as u64);
         let measurement = measure(case, wanted, seed);
-        let verdict = measurement.verdict(case, level);
-        if verdict != Verdict::Inconclusive || round == ROUNDS {
+        let close = measurement.is_close(case);
+        if close || round == ROUNDS {
             return Shown {
                 measurement,
-                verdict,
+                close,
                 round,
             };
         }

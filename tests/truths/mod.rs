@@ -21,12 +21,11 @@ mod white;
 
 use std::sync::OnceLock;
 
-use etalon::stats::verdict::Verdict;
 use rayon::prelude::*;
 use serde_json::Value;
 
 use crate::truth_file::{list, number, truth};
-use harness::{CLOSE, Case, Measurement, judge, measure_all, show};
+use harness::{CLOSE, Case, Measurement, Shown, judge, measure_all, show};
 
 fn numbers(value: &Value) -> Vec<f64> {
     list(value).iter().map(number).collect()
@@ -99,46 +98,48 @@ fn every_truth_is_met() {
     assert!(rejected.is_empty(), "rejected: {rejected:#?}");
 }
 
-/// Each number is *shown* to be within 0.02 % of the truth, at a family-wise level of 1e-3: where
-/// samples leave that open, fresh and more of them decide, up to three times.
+/// The 95 % confidence interval of each number lies within 0.02 % of the truth: where it does not, fresh
+/// and more samples are drawn, up to three times. What is off by 0.02 % passes once in forty rounds; of all
+/// together, none is rejected at the level of the usual run.
 #[test]
 #[ignore = "takes the better part of an hour"]
 fn every_truth_is_met_within_two_hundredths_of_a_per_cent() {
     let cases = cases();
     let count = cases.len();
-    let numbers: Vec<(String, Verdict)> = cases
+    let numbers: Vec<(Case, Shown)> = cases
         .into_par_iter()
         .enumerate()
         .map(|(place, case)| {
-            let shown = show(&case, place, count);
+            let shown = show(&case, place);
             let m = shown.measurement;
             println!(
-                "{:<58} {:>+9.5} % ± {:.5} %, {:?} in round {} with {} paths",
+                "{:<58} {:>+9.5} % ± {:.5} %, {} in round {} with {} paths",
                 case.name,
                 100.0 * (m.value / case.truth - 1.0),
                 100.0 * m.standard_error / case.truth,
-                shown.verdict,
+                if shown.close { "close" } else { "open" },
                 shown.round,
                 m.samples,
             );
-            (case.name, shown.verdict)
+            (case, shown)
         })
         .collect();
-    let those = |verdict: Verdict| -> Vec<&str> {
-        let of = numbers.iter().filter(|(_, v)| *v == verdict);
-        of.map(|(name, _)| name.as_str()).collect()
-    };
-    let (off, open) = (those(Verdict::Fail), those(Verdict::Inconclusive));
+    let open: Vec<&str> = numbers
+        .iter()
+        .filter(|(_, shown)| !shown.close)
+        .map(|(case, _)| case.name.as_str())
+        .collect();
     println!(
-        "{} of {count} numbers are shown to be within {} % of the truth",
-        those(Verdict::Pass).len(),
+        "{} of {count} numbers are within {} % of the truth, confidence intervals included",
+        count - open.len(),
         100.0 * CLOSE,
     );
-    assert!(off.is_empty(), "shown to be off: {off:?}");
-    assert!(
-        open.is_empty(),
-        "neither shown to be within nor off: {open:?}"
-    );
+    let judged = numbers
+        .iter()
+        .map(|(case, s)| (&s.measurement, case.truth, case));
+    let rejected = judge(judged);
+    assert!(rejected.is_empty(), "rejected: {rejected:#?}");
+    assert!(open.is_empty(), "not shown to be within: {open:?}");
 }
 
 /// Half a per cent of bias in any one number is seen, in either direction.

@@ -187,12 +187,14 @@ fn still_life(scale: f64, shift: DVec3, albedo: f64) -> Text {
     .environment(0.5)
 }
 
+/// Samples a pixel where blocks are compared.
+const SAMPLES: u32 = 2048;
 /// Edge of the blocks of pixels that are compared.
 const BLOCK: usize = 4;
 
 /// Means of blocks of pixels.
 fn blocks(text: &Text, seed: u64) -> Vec<Estimate> {
-    let estimates = render(text, 2048, seed, None).xyz();
+    let estimates = render(text, SAMPLES, seed, None).xyz();
     let width = text.size[0] as usize;
     let across = width / BLOCK;
     (0..across * across)
@@ -202,7 +204,7 @@ fn blocks(text: &Text, seed: u64) -> Vec<Estimate> {
                 .map(|i| (y + i / BLOCK) * width + x + i % BLOCK)
                 .map(|i| [estimates[i].mean[1], estimates[i].standard_error[1]])
                 .collect();
-            mean(&pixels)
+            mean(&pixels, SAMPLES)
         })
         .collect()
 }

@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 
 use glam::DVec3;
 
+use super::harness::replicates;
+
 /// A scene file without its sample counts.
 #[derive(Debug, Clone)]
 pub struct Text {
@@ -168,16 +170,17 @@ impl Text {
         self
     }
 
-    /// The whole file, with two independent scrambles.
+    /// The whole file.
     pub fn file(&self, spp: u32, seed: u64) -> String {
         let [width, height] = self.size;
         let depth = match self.depth {
             Some(depth) => format!("max_depth = {depth}\n"),
             None => String::new(),
         };
+        let replicates = replicates(spp);
         format!(
             "{}{}[image]\nsize = [{width}, {height}]\nspp = {spp}\nseed = {seed}\n\
-             replicates = 2\n{depth}{}[materials]\n{}{}",
+             replicates = {replicates}\n{depth}{}[materials]\n{}{}",
             self.environment, self.camera, self.extra, self.materials, self.objects
         )
     }
