@@ -23,7 +23,7 @@ use statrs::distribution::{Binomial, DiscreteCDF};
 /// Probability of a false alarm of all references together.
 const LEVEL: f64 = 1e-3;
 /// Camera paths per pixel of the pilots.
-const PILOT: u32 = 256;
+const PILOT: u32 = 1024;
 /// Camera paths of the first round of a case at most: two minutes are shared by all.
 const MOST: Paths = Paths {
     to_show: 24_000_000,
