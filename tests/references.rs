@@ -22,7 +22,8 @@ use statrs::distribution::{Binomial, DiscreteCDF};
 
 /// Probability of a false alarm of all references together.
 const LEVEL: f64 = 1e-3;
-/// Camera paths per pixel of the pilots.
+/// Camera paths per pixel of the pilots: enough to see the rare paths of `materials`, whose error would else
+/// be underrated, and questions asked again with many more.
 const PILOT: u32 = 1024;
 /// Camera paths of the first round of a case at most: two minutes are shared by all.
 const MOST: Paths = Paths {

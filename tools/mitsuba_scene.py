@@ -327,7 +327,7 @@ def unmirrored(to_world):
 
 def needs_double(tables):
     """Whether a scene has ellipsoids. In `llvm` variants Mitsuba solves their equation in single
-    precision, and what they scatter starts inside of them: up to 12 % too dark, the smaller the worse."""
+    precision, and what they scatter starts inside of them: too dark, the smaller the worse (reference/README.md)."""
     places = [scene_file.placed(entry) for entry in tables.get("object", [])]
     materials = tables["materials"]
     return any(

@@ -102,7 +102,7 @@ fn every_truth_is_met() {
 /// and more samples are drawn, up to three times. What is off by 0.02 % passes once in forty rounds; of all
 /// together, none is rejected at the level of the usual run.
 #[test]
-#[ignore = "takes the better part of an hour"]
+#[ignore = "takes 25 minutes on two cores"]
 fn every_truth_is_met_within_two_hundredths_of_a_per_cent() {
     let cases = cases();
     let count = cases.len();
