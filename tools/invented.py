@@ -191,9 +191,7 @@ def toml(value):
 
 def mitsuba_picture(reference, seed, path):
     """Renders a reference."""
-    tables = reference.tables()
-    variant = "scalar_spectral" if mitsuba_scene.needs_double(tables) else mitsuba_scene.DEFAULT_VARIANT
-    mitsuba_scene.set_variant(variant, 0)
+    replicates.choose_variant(reference.tables(), mitsuba_scene.DEFAULT_VARIANT)
     mi.set_log_level(mi.LogLevel.Error)
     mean, variance, _, _ = replicates.mean_and_variance(replicates.pictures(reference, seed))
     attributes = reference_file.scene_attributes(reference) | {"replicates": reference.replicates}

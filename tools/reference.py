@@ -41,15 +41,6 @@ from scene_file import SceneError
 SEEDS_EACH = 8192
 
 
-def choose_variant(reference, arguments):
-    """Sets Mitsuba's variant: many small pictures of one wavelength each are faster in the scalar one,
-    which compiles nothing, and ellipsoids are right there only."""
-    tables = reference.tables()
-    scalar = replicates.has_dispersion(tables) or mitsuba_scene.needs_double(tables)
-    variant = "scalar_spectral" if scalar else arguments.variant
-    mitsuba_scene.set_variant(variant, arguments.threads)
-
-
 def first_seed(reference):
     """Of the seeds that only this reference has."""
     return SEEDS_EACH * (1 + zlib.crc32(reference.name.encode()) % 2**17)
@@ -224,10 +215,10 @@ def main():
             if arguments.agreement:
                 reference_agreement.compare(reference, path, arguments)
             elif arguments.verify:
-                choose_variant(reference, arguments)
+                replicates.choose_variant(reference.tables(), arguments.variant, arguments.threads)
                 code = verify(reference) or code
             elif arguments.force or path != reference.file or reason(reference):
-                choose_variant(reference, arguments)
+                replicates.choose_variant(reference.tables(), arguments.variant, arguments.threads)
                 make(reference, path, arguments)
         except (SceneError, etalon.EtalonError, OSError) as error:
             print(f"error: {reference.name}: {error}", file=sys.stderr)

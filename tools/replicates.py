@@ -31,6 +31,13 @@ def has_dispersion(tables):
     return any(mitsuba_scene.has_dispersion(glass) for glass in glasses)
 
 
+def choose_variant(tables, variant, threads=0):
+    """Sets Mitsuba's variant: many small pictures of one wavelength each are faster in the scalar one,
+    which compiles nothing, and ellipsoids are right there only."""
+    scalar = has_dispersion(tables) or mitsuba_scene.needs_double(tables)
+    mitsuba_scene.set_variant("scalar_spectral" if scalar else variant, threads)
+
+
 def pictures(reference, first_seed):
     """Yields `reference.replicates` pictures (height×width×channel, float64): linear Rec. 709, then
     mean spectral radiance in each band."""

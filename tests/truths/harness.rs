@@ -231,6 +231,25 @@ pub fn measure_all(cases: Vec<Case>) -> Vec<(Case, Measurement)> {
         .collect()
 }
 
+/// The long run can fail: a number that is off is not close, nor one that is hardly known.
+#[test]
+fn what_is_off_or_hardly_known_is_not_close() {
+    let text = Text::perspective(glam::DVec3::ZERO, glam::DVec3::Z, 40.0);
+    let case = Case::new("one", text, 1.0);
+    let is_close = |off: f64, standard_error: f64| {
+        let measurement = Measurement {
+            value: 1.0 + off,
+            standard_error,
+            freedom: 64.0,
+            samples: 1,
+        };
+        measurement.is_close(&case)
+    };
+    assert!(is_close(0.25 * CLOSE, 0.25 * CLOSE));
+    assert!(!is_close(CLOSE, 0.05 * CLOSE) && !is_close(-CLOSE, 0.05 * CLOSE));
+    assert!(!is_close(0.0, CLOSE));
+}
+
 /// What the long run says of a number.
 pub struct Shown {
     pub measurement: Measurement,
