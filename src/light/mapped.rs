@@ -35,6 +35,26 @@ enum Canonical<T> {
     Cylinder(CylinderLight<T>),
 }
 
+/// A sample carried over, but for the canonical density.
+struct Mapped<L: Lanes> {
+    /// The sample, with the factor of its density.
+    towards: Towards<L>,
+    /// The canonical direction of its own rounded direction, of which both strategies are to see the
+    /// density.
+    back: Vec3<L::Real>,
+}
+
+impl<L: Lanes> Mapped<L> {
+    /// The sample with the canonical density of [`Self::back`].
+    #[inline(always)]
+    fn with(&self, pdf: L::Real) -> Towards<L> {
+        Towards {
+            pdf: pdf * self.towards.pdf,
+            ..self.towards
+        }
+    }
+}
+
 impl<T: Scalar> MappedLight<T> {
     /// The image of the sphere of radius 1.
     pub fn ellipsoid(centre: DVec3, linear: DMat3, emits: [bool; 2]) -> Self {
@@ -105,33 +125,37 @@ impl<T: Scalar> MappedLight<T> {
             #[inline(always)]
             || {
                 let q = self.preimage(l, p);
-                let (towards, part) = match &self.canonical {
-                    Canonical::Sphere(sphere) => (sphere.sample(l, q, numbers), None),
+                match &self.canonical {
+                    Canonical::Sphere(sphere) => {
+                        let mapped = self.mapped(l, &sphere.sample(l, q, numbers));
+                        mapped.with(sphere.pdf(l, q, mapped.back))
+                    }
                     Canonical::Cylinder(cylinder) => {
                         let (towards, part) = cylinder.sample_part(l, q, numbers);
-                        (towards, Some(part))
+                        let mapped = self.mapped(l, &towards);
+                        mapped.with(cylinder.pdf_of_part(l, q, mapped.back, &part))
                     }
-                };
-                let along = combined(l, &self.linear, towards.direction);
-                let stretch = along.length_squared().sqrt();
-                let direction = along.scale(l.real(1.0) / stretch);
-                // Both strategies are to see the density of this very direction.
-                let (back, factor) = self.canonical_direction(l, direction);
-                let pdf = match (&self.canonical, &part) {
-                    (Canonical::Cylinder(cylinder), Some(part)) => {
-                        cylinder.pdf_of_part(l, q, back, part)
-                    }
-                    (Canonical::Cylinder(_), None) => l.real(0.0),
-                    (Canonical::Sphere(sphere), _) => sphere.pdf(l, q, back),
-                };
-                Towards {
-                    direction,
-                    distance: towards.distance * stretch,
-                    pdf: pdf * factor,
-                    valid: towards.valid,
                 }
             },
         )
+    }
+
+    /// What the map makes of a sample.
+    #[inline(always)]
+    fn mapped<L: Lanes<Scalar = T>>(&self, l: L, towards: &Towards<L>) -> Mapped<L> {
+        let along = combined(l, &self.linear, towards.direction);
+        let stretch = along.length_squared().sqrt();
+        let direction = along.scale(l.real(1.0) / stretch);
+        let (back, factor) = self.canonical_direction(l, direction);
+        Mapped {
+            towards: Towards {
+                direction,
+                distance: towards.distance * stretch,
+                pdf: factor,
+                valid: towards.valid,
+            },
+            back,
+        }
     }
 
     /// Density of [`Self::sample`].
