@@ -2,6 +2,7 @@
 //! right.
 
 pub mod camera;
+pub mod field;
 pub mod film;
 pub mod integrate;
 pub mod light;

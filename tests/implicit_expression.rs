@@ -3,14 +3,14 @@
 
 use std::path::Path;
 
-use etalon::scene::{self, Diagnostic, FinderChoice, Implicit, Overrides, Shape};
-use etalon::shape::implicit::expression::{
+use etalon::field::expression::{
     DEEPEST, LONGEST, MOST_BITS, MOST_EXPONENT, MOST_OPERATIONS, Parameter, Problem, check_name,
     parse, parse_constant, rational,
 };
-use etalon::shape::implicit::named::{self, SURFACES};
-use etalon::shape::implicit::polynomial::{MOST_DEGREE, Polynomial};
-use etalon::shape::implicit::tape::{Algebra, Binary, Operation, Tape, Unary};
+use etalon::field::named::{self, SURFACES};
+use etalon::field::polynomial::{MOST_DEGREE, Polynomial};
+use etalon::field::tape::{Algebra, Binary, Operation, Tape, Unary};
+use etalon::scene::{self, Diagnostic, FinderChoice, Implicit, Overrides, Shape};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};

@@ -3,18 +3,18 @@
 
 use std::sync::Arc;
 
+use etalon::field::bounded;
+use etalon::field::evaluate::{Field, nearest};
+use etalon::field::expression::{Expression, parse};
+use etalon::field::lanes::{LaneField, Scratch};
+use etalon::field::named::{self, SURFACES};
+use etalon::field::normal::outward;
 use etalon::math::affine::Affine;
 use etalon::math::lanes::Lanes;
 use etalon::math::vec3::Vec3;
 use etalon::scene::{FinderChoice, Implicit};
-use etalon::shape::implicit::bounded;
 use etalon::shape::implicit::certified::Workspace;
-use etalon::shape::implicit::evaluate::{Field, nearest};
-use etalon::shape::implicit::expression::{Expression, parse};
-use etalon::shape::implicit::named::{self, SURFACES};
-use etalon::shape::implicit::normal::outward;
 use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
-use etalon::shape::lanes::field::{LaneField, Scratch};
 use etalon::shape::{Query, Ray};
 use glam::DVec3;
 use num_bigint::BigInt;

@@ -9,11 +9,11 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use etalon::field::evaluate::Field;
+use etalon::field::expression::parse;
 use etalon::math::affine::Affine;
 use etalon::scene::{FinderChoice, Implicit};
 use etalon::shape::implicit::certified::Workspace;
-use etalon::shape::implicit::evaluate::Field;
-use etalon::shape::implicit::expression::parse;
 use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
 use etalon::shape::{Query, Ray};
 use glam::DVec3;

@@ -7,14 +7,14 @@
 
 use std::collections::HashMap;
 
+use etalon::field::expression::parse;
+use etalon::field::over_box::over_box;
 use etalon::math::affine::Affine;
 use etalon::math::instructions::Instructions;
 use etalon::root::Outcome;
 use etalon::root::interval::{Enclosed, PIECES, Pieces, first_zero};
 use etalon::shape::Ray;
 use etalon::shape::implicit::enclosed::{EnclosedField, Method, Searching};
-use etalon::shape::implicit::expression::parse;
-use etalon::shape::implicit::over_box::over_box;
 use etalon::shape::ladder::{Ladder, ScaledRay};
 use etalon::study::finders::OracleShape;
 use glam::DVec3;

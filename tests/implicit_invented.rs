@@ -7,9 +7,9 @@
     reason = "chosen numbers are finite and fields are polynomials"
 )]
 
+use etalon::field::tape::{Binary, Operation, Tape};
 use etalon::math::affine::Affine;
 use etalon::shape::implicit::certified::{Answers, Certified, Packet, Tier, Wish, Workspace};
-use etalon::shape::implicit::tape::{Binary, Operation, Tape};
 use fearless_simd::Level;
 use glam::DVec3;
 use num_bigint::BigInt;

@@ -10,10 +10,10 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use etalon::field::normal::SHARP;
 use etalon::math::affine::Affine;
 use etalon::scene::{FinderChoice, Implicit};
 use etalon::shape::implicit::certified::{Certified, Packet, WIDTH, Wish, Workspace};
-use etalon::shape::implicit::normal::SHARP;
 use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitHit, ImplicitTally, PlacedImplicit};
 use etalon::shape::{Query, Ray};
 use etalon::study::finders::OracleShape;

@@ -10,11 +10,11 @@ use super::fields::{Complaint, Fields, Report};
 use super::objects::SHAPES;
 use super::tree::{Node, Place, Value};
 use super::{FinderChoice, Implicit};
-use crate::shape::implicit::expression::{
+use crate::field::expression::{
     self, Expression, ExpressionError, Parameter, check_name, parse_constant, rational,
 };
-use crate::shape::implicit::named::{self, NamedSurface, SURFACES};
-use crate::shape::implicit::over_box::over_box;
+use crate::field::named::{self, NamedSurface, SURFACES};
+use crate::field::over_box::over_box;
 
 /// The finder of objects that name none, and where it is written.
 pub(super) type DefaultFinder = (FinderChoice, Option<Place>);

@@ -25,8 +25,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use crate::field::expression::Expression;
 use crate::math::affine::Affine;
-use crate::shape::implicit::expression::Expression;
 use crate::spectrum::Spectrum;
 use crate::spectrum::ior::RefractiveIndex;
 

@@ -18,6 +18,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
+use etalon::field::expression::Expression;
+use etalon::field::named;
 use etalon::math::affine::Affine;
 use etalon::math::lanes::{Double, Lanes};
 use etalon::math::vec3::Vec3;
@@ -25,8 +27,6 @@ use etalon::scene::{FinderChoice, Implicit};
 use etalon::shape::Query;
 use etalon::shape::implicit::baseline::SteppingFinder;
 use etalon::shape::implicit::certified::{Certified, Packet, WIDTH, Wish, Workspace};
-use etalon::shape::implicit::expression::Expression;
-use etalon::shape::implicit::named;
 use etalon::shape::lanes::LaneRay;
 use etalon::shape::lanes::implicit::{LaneImplicit, StartSign};
 use etalon::study::finders::{CLASSES, Oracle};

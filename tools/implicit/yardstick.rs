@@ -7,8 +7,8 @@
 
 use std::cell::RefCell;
 
-use etalon::shape::implicit::program::{LARGEST_DEGREE, Program, Step};
-use etalon::shape::implicit::tape::Tape;
+use etalon::field::program::{LARGEST_DEGREE, Program, Step};
+use etalon::field::tape::Tape;
 use glam::DVec3;
 
 const ROOM: usize = LARGEST_DEGREE + 1;

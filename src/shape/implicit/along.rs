@@ -1,6 +1,6 @@
 //! A field along a line, enclosed.
 
-use super::interval_program::{IntervalProgram, Side};
+use crate::field::interval_program::{IntervalProgram, Side};
 use crate::math::instructions::DoubleLanes;
 use crate::math::interval::{Interval, ScalarInterval, bits, down, up};
 use crate::math::jet::Jet;

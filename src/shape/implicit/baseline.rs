@@ -6,13 +6,13 @@
 
 use glam::DVec3;
 
+use crate::field::evaluate::Field;
+use crate::field::tape::Tape;
+use crate::field::{bounded, normal};
 use crate::math::affine::Affine;
 use crate::math::double_double::DoubleDouble;
 use crate::math::number::{Number, power_of_two};
 use crate::scene::Implicit;
-use crate::shape::implicit::evaluate::Field;
-use crate::shape::implicit::tape::Tape;
-use crate::shape::implicit::{bounded, normal};
 use crate::shape::ladder::{Ladder, ScaledRay};
 use crate::shape::{Query, Ray, SingularMatrix};
 

@@ -3,14 +3,13 @@
 //! The ray is clipped to a box outside of which the surface has proved not to be, the field formed
 //! as Bernstein coefficients between the two ends, and the first root isolated with certain signs
 //! ([`crate::root::bernstein`]). One number a ray bounds the coefficients' errors: a constant of
-//! the surface (see [`super::program::bounds`]), and another one times the distance between the
+//! the surface (see [`crate::field::program::bounds`]), and another one times the distance between the
 //! rounded local ends and the exact ones. Rays that f64 leaves undecided are asked again in
 //! double-double, and the rest exactly.
 
 mod exact;
 mod kernel;
 mod normal;
-mod outer;
 mod place;
 mod stream;
 

@@ -4,9 +4,9 @@ use glam::DVec3;
 
 use super::along::Along;
 use super::clip::{Clipped, clipped};
-use super::interval_program::IntervalProgram;
-use super::over_box::survey;
-use super::tape::Tape;
+use crate::field::interval_program::IntervalProgram;
+use crate::field::over_box::survey;
+use crate::field::tape::Tape;
 use crate::math::double_double::DoubleDouble;
 use crate::math::instructions::{DoubleLanes, Instructions, Job};
 use crate::math::interval::ScalarInterval;

@@ -10,18 +10,18 @@ use std::cell::RefCell;
 use fearless_simd::Level;
 use glam::DVec3;
 
+use crate::field::evaluate::Field;
+use crate::field::normal;
 use crate::math::affine::Affine;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, WIDEST, inlined};
 use crate::math::vec3::{Rows, Vec3};
 use crate::scene::Implicit;
 use crate::shape::SingularMatrix;
 use crate::shape::implicit::certified::{Packet, WIDTH, Workspace};
-use crate::shape::implicit::evaluate::Field;
-use crate::shape::implicit::normal;
 use crate::shape::implicit::placed::{Finder, ImplicitTally};
 
 use super::LaneRay;
-use super::field::{LaneField, Scratch, each};
+use crate::field::lanes::{LaneField, Scratch, each};
 
 /// An implicit surface placed in the world.
 #[derive(Debug, Clone)]

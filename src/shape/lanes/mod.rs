@@ -18,7 +18,6 @@ use crate::math::vec3::{Rows, Vec3};
 use crate::shape::ShapeKind;
 
 pub mod balls;
-pub mod field;
 pub mod implicit;
 pub mod part;
 

@@ -7,12 +7,12 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use super::Subject;
+use crate::field::evaluate::Field;
+use crate::field::expression::{Expression, parse};
+use crate::field::named;
 use crate::math::affine::Affine;
 use crate::scene::{FinderChoice, Implicit};
 use crate::shape::implicit::certified::Certified;
-use crate::shape::implicit::evaluate::Field;
-use crate::shape::implicit::expression::{Expression, parse};
-use crate::shape::implicit::named;
 use crate::shape::{Ray, ShapeKind};
 
 /// What makes rays hard.

@@ -5,11 +5,11 @@ use std::cell::RefCell;
 use num_rational::BigRational;
 
 use super::Answer;
+use crate::field::evaluate::{binary, nearest, unary};
+use crate::field::tape::{Algebra, Binary, Tape, Unary};
 use crate::math::lanes::Scalar;
 use crate::root::sign_change::first_change;
 use crate::shape::Ray;
-use crate::shape::implicit::evaluate::{binary, nearest, unary};
-use crate::shape::implicit::tape::{Algebra, Binary, Tape, Unary};
 
 /// A surface to step along.
 pub struct March<T> {

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::Answer;
+use crate::field::expression::{Expression, Parameter, parse, rational};
 use crate::shape::Ray;
-use crate::shape::implicit::expression::{Expression, Parameter, parse, rational};
 
 /// Rays and surfaces that come with the program.
 const RAYS: &str = include_str!("../../../tests/data/implicit.csv");

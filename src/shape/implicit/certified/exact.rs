@@ -5,8 +5,8 @@ use std::cmp::Ordering;
 use num_bigint::BigInt;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
-use super::super::program::{Program, Whole};
 use super::Certified;
+use crate::field::program::{Program, Whole};
 use crate::math::exact::Exact;
 use crate::math::number::{Number, power_of_two};
 use crate::root::exact::{ExactRoot, Point, Stretch, first_root};

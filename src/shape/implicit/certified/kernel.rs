@@ -1,8 +1,8 @@
 //! One packet in one arithmetic.
 
-use super::super::program::Step;
 use super::place::{Certified, FactorField, Inverse};
 use super::{Answers, DoubleLanes, Packet, SHARP, WIDTH};
+use crate::field::program::Step;
 use crate::math::lanes::{Mask, Real};
 use crate::math::words::{Row, Word};
 use crate::root::bernstein::{Problem, Roots, first_roots};

@@ -4,10 +4,10 @@ use glam::DVec3;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 
-use super::super::differentiate::{Differentiable, Gradients};
-use super::super::tape::{Algebra, Binary, Tape, Unary};
 use super::Certified;
 use super::exact::hit_points;
+use crate::field::differentiate::{Differentiable, Gradients};
+use crate::field::tape::{Algebra, Binary, Tape, Unary};
 use crate::math::exact::Exact;
 use crate::math::number::Number;
 use crate::shape::Ray;

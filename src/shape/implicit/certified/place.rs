@@ -2,15 +2,15 @@
 
 use glam::DVec3;
 
-use super::super::program::Program;
-use super::super::program::bounds::{FieldBounds, PLAIN, Rounding, binomial, bounds};
-use super::super::tape::Tape;
-use super::outer::outer_box;
+use crate::field::outer::outer_box;
+use crate::field::program::Program;
+use crate::field::program::bounds::{FieldBounds, PLAIN, Rounding, binomial, bounds};
+use crate::field::tape::Tape;
 use crate::math::affine::Affine;
 use crate::math::double_double::DoubleDouble;
 use crate::math::exact::Exact;
 use crate::math::number::{Number, dot};
-use crate::root::bernstein::split_error;
+use crate::root::bernstein::{DEGREES, split_error};
 use crate::shape::SingularMatrix;
 use crate::shape::ladder::Ladder;
 
@@ -95,7 +95,7 @@ impl Certified {
         let factors = field.factors().factors;
         let programs = factors
             .iter()
-            .map(|f| Some((Program::new(&f.tape)?, f.multiplicity)));
+            .map(|f| Some((Program::new(&f.tape, &DEGREES)?, f.multiplicity)));
         let Some(programs) = programs.collect::<Option<Vec<_>>>() else {
             return Ok(None);
         };

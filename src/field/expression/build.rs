@@ -8,7 +8,7 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 use super::error::Problem;
 use super::token::fits;
 use super::{MOST_EXPONENT, MOST_OPERATIONS, fold};
-use crate::shape::implicit::tape::{Binary, Operation, Place, Tape, Unary};
+use crate::field::tape::{Binary, Operation, Place, Tape, Unary};
 
 /// What a part of an expression came to.
 #[derive(Debug, Clone, PartialEq)]

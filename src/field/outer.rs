@@ -2,7 +2,7 @@
 //!
 //! Cells of the clip box are halved along all axes, and those in which interval arithmetic (Moore
 //! 1966, every operation rounded outward) shows that no factor vanishes are dropped. What is left is
-//! bounded. A smaller box makes every bound of [`super::super::program::bounds`] smaller, and rays
+//! bounded. A smaller box makes every bound of [`super::program::bounds`] smaller, and rays
 //! beside it cost next to nothing.
 
 use std::cmp::Ordering;
@@ -11,7 +11,7 @@ use std::collections::BinaryHeap;
 use glam::DVec3;
 use num_rational::BigRational;
 
-use super::super::tape::{Algebra, Binary, Tape, Unary};
+use super::tape::{Algebra, Binary, Tape, Unary};
 
 /// Halvings of the clip box: faces are found to a 64th of it.
 const LEVELS: u32 = 6;
@@ -69,7 +69,7 @@ impl Algebra for Cell {
         self.0[axis]
     }
     fn constant(&self, _: usize, exact: &BigRational) -> Interval {
-        let x = super::super::program::nearest(exact);
+        let x = super::program::nearest(exact);
         [x.next_down(), x.next_up()]
     }
     fn unary(&self, function: Unary, a: &Interval) -> Interval {

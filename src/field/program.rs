@@ -19,7 +19,6 @@ use num_traits::{One, ToPrimitive, Zero};
 
 use super::tape::{Binary, Operation, Tape, Unary};
 use crate::math::number::Number;
-use crate::root::bernstein::DEGREES;
 
 /// Largest degree along a line; beyond, fields are treated like any other expression.
 pub const LARGEST_DEGREE: usize = 24;
@@ -83,8 +82,9 @@ pub struct Program {
 }
 
 impl Program {
-    /// `None` where the tape is not a polynomial, or one too large.
-    pub fn new(tape: &Tape) -> Option<Self> {
+    /// The field as a form of the least of the given degrees, in ascending order, that holds it;
+    /// `None` where the tape is not a polynomial, or one of a larger degree.
+    pub fn new(tape: &Tape, degrees: &[usize]) -> Option<Self> {
         let mut algebra = Algebra::default();
         let mut values: Vec<Linear> = Vec::new();
         for operation in tape.operations() {
@@ -93,7 +93,7 @@ impl Program {
         }
         let field = values.last()?;
         let degree = algebra.degree(field);
-        let raised = *DEGREES.iter().find(|d| **d >= degree)?;
+        let raised = *degrees.iter().find(|d| **d >= degree)?;
         Emission::new(&algebra).program(field, raised)
     }
 

@@ -2,11 +2,11 @@
 
 use num_rational::BigRational;
 
+use crate::field::differentiate::{Differentiable, Gradients, WithGradient};
+use crate::field::evaluate;
+use crate::field::tape::{Algebra, Binary, Tape, Unary};
 use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::vec3::Vec3;
-use crate::shape::implicit::differentiate::{Differentiable, Gradients, WithGradient};
-use crate::shape::implicit::evaluate;
-use crate::shape::implicit::tape::{Algebra, Binary, Tape, Unary};
 
 /// A tape with its constants rounded once.
 #[derive(Debug, Clone)]

@@ -6,7 +6,7 @@ use super::build::{Builder, Value};
 use super::error::{ExpressionError, Problem};
 use super::token::{self, Token, Word};
 use super::{DEEPEST, FUNCTIONS, LONGEST, Parameter, RESERVED, rational};
-use crate::shape::implicit::tape::{Binary, Operation, Unary};
+use crate::field::tape::{Binary, Operation, Unary};
 
 type Parsed = Result<(Value, Range<usize>), ExpressionError>;
 

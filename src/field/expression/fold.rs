@@ -5,8 +5,8 @@ use num_traits::{One, Signed, Zero};
 
 use super::MOST_BITS;
 use super::error::Problem;
-use crate::shape::implicit::rational::square_root;
-use crate::shape::implicit::tape::Unary;
+use crate::field::rational::square_root;
+use crate::field::tape::Unary;
 
 /// cⁿ.
 pub(super) fn whole_power(c: &BigRational, n: i32) -> Result<BigRational, Problem> {
