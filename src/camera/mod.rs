@@ -9,8 +9,46 @@ use crate::math::lanes::{Lanes, Scalar, inlined};
 use crate::math::vec3::Vec3;
 use crate::sample::sequence::CameraSample;
 use crate::sample::warp::square_to_disk;
-use crate::scene::{Camera, Projection};
 use crate::shape::Ray;
+
+/// Position, direction and optics of the camera.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// Position of the lens centre, scene units.
+    pub from: DVec3,
+    /// A point straight ahead.
+    pub to: DVec3,
+    /// The direction that is up in the picture; default +y.
+    pub up: DVec3,
+    /// What the image plane shows.
+    pub projection: Projection,
+    /// A thin lens; `None` is a pinhole.
+    pub lens: Option<Lens>,
+}
+
+/// How image points become directions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Projection {
+    /// Central projection with this full *vertical* opening angle in degrees.
+    Perspective {
+        /// Full vertical opening angle, degrees, in (0, 180).
+        fov: f64,
+    },
+    /// Parallel projection showing this height of the scene, in scene units.
+    Orthographic {
+        /// Height of the picture in scene units.
+        height: f64,
+    },
+}
+
+/// A thin lens, sharp on the plane at distance `focus` (along the view axis).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lens {
+    /// Radius of the circular aperture, scene units, > 0.
+    pub radius: f64,
+    /// Distance of the plane of focus, scene units, > 0.
+    pub focus: f64,
+}
 
 /// The camera's orthonormal axes in world space: right, up, forward.
 pub fn axes(camera: &Camera) -> [DVec3; 3] {

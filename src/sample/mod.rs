@@ -47,3 +47,37 @@ impl Slot {
         depth.times(l.int(Self::STRIDE)).plus(l.int(self as u32))
     }
 }
+
+/// The samplers by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SamplerKind {
+    /// Every number drawn on its own.
+    Independent,
+    /// Strata visited in a random order per pixel.
+    Stratified,
+    /// Owen-scrambled Sobol' points.
+    Sobol,
+    /// One ray through the pixel's centre.
+    Center,
+}
+
+impl SamplerKind {
+    /// All of them, the usual one first.
+    pub const ALL: [Self; 4] = [
+        Self::Sobol,
+        Self::Independent,
+        Self::Stratified,
+        Self::Center,
+    ];
+
+    /// The name in scene files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Independent => "independent",
+            Self::Stratified => "stratified",
+            Self::Sobol => "sobol",
+            Self::Center => "center",
+        }
+    }
+}

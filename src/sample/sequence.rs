@@ -1,10 +1,10 @@
 //! The samplers: one description, asked by slot.
 
+use super::SamplerKind;
 use super::hash::{Keys, mix, pcg4d};
 use super::permute::permute;
 use super::{Slot, sobol};
 use crate::math::lanes::{Int, Lanes, Real, WIDEST, inlined};
-use crate::scene::SamplerKind;
 
 /// Which points a render uses, and how many of them a replicate may see.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

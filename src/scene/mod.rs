@@ -19,14 +19,14 @@ mod tree;
 
 pub use error::{Diagnostic, SceneError};
 pub use file::{LARGEST_FILE, Overrides, load, panel_names, parse, read};
-pub use objects::PLAIN;
-
-use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::field::expression::Expression;
+pub use crate::camera::{Camera, Lens, Projection};
 use crate::math::affine::Affine;
+pub use crate::sample::SamplerKind;
+pub use crate::shape::implicit::{FinderChoice, Implicit};
+pub use crate::shape::{PLAIN, Shape};
 use crate::spectrum::Spectrum;
 use crate::spectrum::ior::RefractiveIndex;
 
@@ -72,45 +72,6 @@ pub struct Named<T> {
     pub value: T,
 }
 
-/// Position, direction and optics of the camera.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Camera {
-    /// Position of the lens centre, scene units.
-    pub from: DVec3,
-    /// A point straight ahead.
-    pub to: DVec3,
-    /// The direction that is up in the picture; default +y.
-    pub up: DVec3,
-    /// What the image plane shows.
-    pub projection: Projection,
-    /// A thin lens; `None` is a pinhole.
-    pub lens: Option<Lens>,
-}
-
-/// How image points become directions.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Projection {
-    /// Central projection with this full *vertical* opening angle in degrees.
-    Perspective {
-        /// Full vertical opening angle, degrees, in (0, 180).
-        fov: f64,
-    },
-    /// Parallel projection showing this height of the scene, in scene units.
-    Orthographic {
-        /// Height of the picture in scene units.
-        height: f64,
-    },
-}
-
-/// A thin lens, sharp on the plane at distance `focus` (along the view axis).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lens {
-    /// Radius of the circular aperture, scene units, > 0.
-    pub radius: f64,
-    /// Distance of the plane of focus, scene units, > 0.
-    pub focus: f64,
-}
-
 /// Image size, sample counts and the choices of the estimator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Image {
@@ -131,40 +92,6 @@ pub struct Image {
     pub precision: PrecisionChoice,
     /// Wavelengths per path; `None` lets the plan choose.
     pub wavelengths: Option<u32>,
-}
-
-/// The samplers by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SamplerKind {
-    /// Every number drawn on its own.
-    Independent,
-    /// Strata visited in a random order per pixel.
-    Stratified,
-    /// Owen-scrambled Sobol' points.
-    Sobol,
-    /// One ray through the pixel's centre.
-    Center,
-}
-
-impl SamplerKind {
-    /// All of them, the usual one first.
-    pub const ALL: [Self; 4] = [
-        Self::Sobol,
-        Self::Independent,
-        Self::Stratified,
-        Self::Center,
-    ];
-
-    /// The name in scene files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Independent => "independent",
-            Self::Stratified => "stratified",
-            Self::Sobol => "sobol",
-            Self::Center => "center",
-        }
-    }
 }
 
 /// What the user says about precision.
@@ -190,75 +117,6 @@ pub struct Object {
     pub size: DVec3,
     /// Canonical coordinates → world; the composed matrix *is* the object.
     pub to_world: Affine,
-}
-
-/// A shape in canonical object coordinates; sizes live in [`Object::to_world`].
-#[derive(Debug, Clone, PartialEq)]
-pub enum Shape {
-    /// x² + y² + z² = 1.
-    Sphere,
-    /// [-1, 1]³.
-    Cube,
-    /// x² + y² = 1 for |z| ≤ 1, with both caps.
-    Cylinder,
-    /// z = 0, x² + y² ≤ 1.
-    Disk,
-    /// z = 0, |x| ≤ 1, |y| ≤ 1.
-    Rectangle,
-    /// z = 0.
-    Plane,
-    /// f(x, y, z) = 0 inside a box.
-    Implicit(Implicit),
-}
-
-/// The zeros of a field within a box.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Implicit {
-    /// The named surface it is, if it is one.
-    pub name: Option<&'static str>,
-    /// The field, negative inside, in object coordinates.
-    pub field: Arc<Expression>,
-    /// The clip box in object coordinates: lower and upper corner.
-    pub inside: [DVec3; 2],
-    /// Where the box cuts the inside of the surface, its faces belong to the surface.
-    pub closed: bool,
-    /// How its hits are found.
-    pub finder: FinderChoice,
-    /// Steps along the clipped ray, for the finder that steps.
-    pub steps: u32,
-}
-
-/// How hits on an implicit surface are found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FinderChoice {
-    /// What the plan chooses.
-    #[default]
-    Auto,
-    /// Equal steps, a change of sign, bisection: the report's method, which proves nothing.
-    SignChange,
-    /// Steps as long as a proved Lipschitz bound allows.
-    SphereTrace,
-    /// Interval enclosures, for any field.
-    Interval,
-    /// Isolation of the roots of a polynomial along the ray.
-    Polynomial,
-}
-
-impl FinderChoice {
-    /// All finders by the names they have in scene files.
-    pub const NAMES: &'static [(&'static str, Self)] = &[
-        ("auto", Self::Auto),
-        ("sign-change", Self::SignChange),
-        ("sphere-trace", Self::SphereTrace),
-        ("interval", Self::Interval),
-        ("polynomial", Self::Polynomial),
-    ];
-
-    /// Its name in scene files.
-    pub fn name(self) -> &'static str {
-        let known = Self::NAMES.iter().find(|(_, finder)| *finder == self);
-        known.map_or("auto", |(name, _)| name)
-    }
 }
 
 /// What a surface does with light: it may reflect, and it may emit besides.

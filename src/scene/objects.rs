@@ -9,34 +9,14 @@ use super::implicit::{self, DefaultFinder};
 use super::names::one_of;
 use super::transform;
 use super::tree::{Node, Value};
-use super::{Named, Object, Shape};
+use super::{Named, Object, PLAIN, Shape};
 use crate::math::affine::Affine;
-
-/// The shapes that need nothing said of them, by name.
-pub const PLAIN: [(&str, Shape); 6] = [
-    ("sphere", Shape::Sphere),
-    ("cube", Shape::Cube),
-    ("cylinder", Shape::Cylinder),
-    ("disk", Shape::Disk),
-    ("rectangle", Shape::Rectangle),
-    ("plane", Shape::Plane),
-];
 
 /// Names of all shapes.
 pub(super) const SHAPES: &[&str] = &[
     PLAIN[0].0, PLAIN[1].0, PLAIN[2].0, PLAIN[3].0, PLAIN[4].0, PLAIN[5].0, "implicit",
 ];
 
-impl Shape {
-    /// Its name in scene files; of an implicit surface that has one, its own.
-    pub fn name(&self) -> &'static str {
-        if let Self::Implicit(implicit) = self {
-            return implicit.name.unwrap_or("implicit");
-        }
-        let plain = PLAIN.iter().find(|(_, shape)| shape == self);
-        plain.map_or("", |(name, _)| name)
-    }
-}
 const KEYS: &[&str] = &["name", "shape", "material", "transform"];
 
 /// A shape as written: canonical form, its size, and where its centre is.

@@ -28,13 +28,52 @@ mod value;
 
 use glam::DVec3;
 
-use crate::scene::{PLAIN, Shape};
-
 use crate::math::number::Number;
+use implicit::Implicit;
 use line::{LocalRay, Span};
 
 pub use list::{Query, nearest, occluded};
 pub use placed::{Placed, SingularMatrix};
+
+/// A shape in canonical object coordinates: sizes are part of the map that places it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// x² + y² + z² = 1.
+    Sphere,
+    /// [-1, 1]³.
+    Cube,
+    /// x² + y² = 1 for |z| ≤ 1, with both caps.
+    Cylinder,
+    /// z = 0, x² + y² ≤ 1.
+    Disk,
+    /// z = 0, |x| ≤ 1, |y| ≤ 1.
+    Rectangle,
+    /// z = 0.
+    Plane,
+    /// f(x, y, z) = 0 inside a box.
+    Implicit(Implicit),
+}
+
+/// The shapes that need nothing said of them, by name.
+pub const PLAIN: [(&str, Shape); 6] = [
+    ("sphere", Shape::Sphere),
+    ("cube", Shape::Cube),
+    ("cylinder", Shape::Cylinder),
+    ("disk", Shape::Disk),
+    ("rectangle", Shape::Rectangle),
+    ("plane", Shape::Plane),
+];
+
+impl Shape {
+    /// Its name in scene files; of an implicit surface that has one, its own.
+    pub fn name(&self) -> &'static str {
+        if let Self::Implicit(implicit) = self {
+            return implicit.name.unwrap_or("implicit");
+        }
+        let plain = PLAIN.iter().find(|(_, shape)| shape == self);
+        plain.map_or("", |(name, _)| name)
+    }
+}
 
 /// The canonical shapes, all closed sets: touching counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -9,6 +9,7 @@ use std::cell::RefCell;
 
 use etalon::field::program::{LARGEST_DEGREE, Program, Step};
 use etalon::field::tape::Tape;
+use etalon::root::bernstein::DEGREES;
 use glam::DVec3;
 
 const ROOM: usize = LARGEST_DEGREE + 1;
@@ -22,7 +23,7 @@ pub struct Yardstick {
 impl Yardstick {
     pub fn new(tape: &Tape, half: f64) -> Self {
         #[expect(clippy::expect_used, reason = "only polynomials are measured")]
-        let program = Program::new(tape).expect("a polynomial");
+        let program = Program::new(tape, &DEGREES).expect("a polynomial");
         let rows = RefCell::new(vec![0.0; program.rows()]);
         Self {
             program,

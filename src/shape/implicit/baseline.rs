@@ -12,7 +12,7 @@ use crate::field::{bounded, normal};
 use crate::math::affine::Affine;
 use crate::math::double_double::DoubleDouble;
 use crate::math::number::{Number, power_of_two};
-use crate::scene::Implicit;
+use crate::shape::implicit::Implicit;
 use crate::shape::ladder::{Ladder, ScaledRay};
 use crate::shape::{Query, Ray, SingularMatrix};
 

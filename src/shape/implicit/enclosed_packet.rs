@@ -9,7 +9,7 @@ use crate::math::interval::ScalarInterval;
 use crate::math::number::{Number, power_of_two};
 use crate::math::scalar_lane::One;
 use crate::root::Outcome;
-use crate::scene::Implicit;
+use crate::shape::implicit::Implicit;
 use crate::shape::ladder::{Ladder, ScaledRay};
 use crate::shape::{Ray, SingularMatrix};
 

@@ -6,7 +6,7 @@ use super::baseline::{Stepped, SteppingFinder};
 use super::certified::{Answers, Certified, Packet, Tier, Wish, Workspace};
 use super::enclosed_packet::EnclosedPacket;
 use crate::math::affine::Affine;
-use crate::scene::{FinderChoice, Implicit};
+use crate::shape::implicit::{FinderChoice, Implicit};
 use crate::shape::{Query, Ray, SingularMatrix};
 
 use glam::DVec3;

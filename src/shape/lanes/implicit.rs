@@ -15,8 +15,8 @@ use crate::field::normal;
 use crate::math::affine::Affine;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, WIDEST, inlined};
 use crate::math::vec3::{Rows, Vec3};
-use crate::scene::Implicit;
 use crate::shape::SingularMatrix;
+use crate::shape::implicit::Implicit;
 use crate::shape::implicit::certified::{Packet, WIDTH, Workspace};
 use crate::shape::implicit::placed::{Finder, ImplicitTally};
 
