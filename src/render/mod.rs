@@ -2,7 +2,6 @@
 
 pub mod bins;
 pub mod blocks;
-pub mod dispatch;
 pub mod goal;
 pub mod memory;
 pub mod pass;

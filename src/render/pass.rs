@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::dispatch::Runs;
 use super::tile::{Tile, Worker};
 use crate::integrate::develop::Spectrometer;
+use crate::integrate::dispatch::Runs;
 use crate::integrate::model::Model;
 use crate::math::instructions::Instructions;
 use crate::plan::{Plan, Tables};
@@ -19,7 +19,7 @@ pub fn run(plan: &Plan, level: Instructions, tiles: &mut [Tile], from: u32, to: 
     }
 }
 
-fn spread<T: Runs, const C: usize>(
+fn spread<T: Runs<C>, const C: usize>(
     scene: &(Model<T>, Spectrometer<T>),
     level: Instructions,
     tiles: &mut [Tile],

@@ -1,8 +1,8 @@
 //! One path again.
 
-use super::dispatch::Runs;
 use crate::integrate::chunk::{Request, Requests, Workspace};
 use crate::integrate::develop::Spectrometer;
+use crate::integrate::dispatch::Runs;
 use crate::integrate::model::Model;
 use crate::integrate::replay::Replayed;
 use crate::math::instructions::Instructions;
@@ -20,7 +20,7 @@ pub fn replay(plan: &Plan, level: Instructions, request: Request) -> Replayed {
     }
 }
 
-fn one<T: Runs, const C: usize>(
+fn one<T: Runs<C>, const C: usize>(
     scene: &(Model<T>, Spectrometer<T>),
     grid: &WavelengthGrid,
     level: Instructions,

@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::bins::Bins;
-use super::dispatch::Runs;
 use crate::film::pixels::{Pixels, is_finite};
 use crate::integrate::chunk::{self, CHUNK, Workspace};
 use crate::integrate::develop::Spectrometer;
+use crate::integrate::dispatch::Runs;
 use crate::integrate::intersect::Rungs;
 use crate::integrate::model::Model;
 use crate::math::instructions::Instructions;
@@ -106,7 +106,7 @@ impl Tile {
     }
 
     /// Adds samples `from .. to` of every pixel.
-    pub fn add<T: Runs, const C: usize>(
+    pub fn add<T: Runs<C>, const C: usize>(
         &mut self,
         level: Instructions,
         scene: &(Model<T>, Spectrometer<T>),

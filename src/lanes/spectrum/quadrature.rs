@@ -5,7 +5,7 @@ use super::Spectrum;
 /// Integral of `f` over [a, b] by Gauss and Legendre's two-point rule, which is exact for
 /// polynomials up to degree 3 — the product of two linear pieces has degree 2 — and looks only
 /// at inner points, so jumps at the ends do no harm.
-pub(crate) fn gauss<const N: usize>(a: f64, b: f64, f: impl Fn(f64) -> [f64; N]) -> [f64; N] {
+pub fn gauss<const N: usize>(a: f64, b: f64, f: impl Fn(f64) -> [f64; N]) -> [f64; N] {
     // 1/√3 (Abramowitz & Stegun 1964, table 25.4).
     const NODE: f64 = 0.577_350_269_189_625_8;
     let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
@@ -14,7 +14,7 @@ pub(crate) fn gauss<const N: usize>(a: f64, b: f64, f: impl Fn(f64) -> [f64; N])
 }
 
 /// Integral of `f` over [a, b] in pieces that end at the kinks of `spectrum`.
-pub(crate) fn between_kinks<const N: usize>(
+pub fn between_kinks<const N: usize>(
     spectrum: &Spectrum,
     a: f64,
     b: f64,

@@ -131,7 +131,7 @@ impl Table {
     }
 
     /// Smallest and largest value over `low..=high`, zero included where samples are missing.
-    pub(crate) fn range(&self, low: f64, high: f64) -> [f64; 2] {
+    pub fn range(&self, low: f64, high: f64) -> [f64; 2] {
         let inside = self
             .nm
             .iter()
@@ -151,7 +151,7 @@ impl Table {
     }
 
     /// Neighbouring samples with different values, and the ends where the value drops to zero.
-    pub(crate) fn rises(&self) -> Vec<[f64; 2]> {
+    pub fn rises(&self) -> Vec<[f64; 2]> {
         let ends = [0, self.nm.len() - 1].into_iter();
         let ends = ends.filter(|&i| self.values[i] != 0.0);
         let inner = (1..self.nm.len()).filter(|&i| self.values[i] != self.values[i - 1]);
@@ -161,7 +161,7 @@ impl Table {
     }
 
     /// The wavelengths of the samples strictly between `low` and `high`.
-    pub(crate) fn nodes_between(&self, low: f64, high: f64) -> &[f64] {
+    pub fn nodes_between(&self, low: f64, high: f64) -> &[f64] {
         let begin = self.nm.partition_point(|&nm| nm <= low);
         let end = self.nm.partition_point(|&nm| nm < high);
         &self.nm[begin..end.max(begin)]
@@ -169,9 +169,7 @@ impl Table {
 }
 
 /// The columns of numbers in CSV text, and the line each row stands in.
-pub(crate) fn columns<const N: usize>(
-    text: &str,
-) -> Result<([Vec<f64>; N], Vec<usize>), TableError> {
+pub fn columns<const N: usize>(text: &str) -> Result<([Vec<f64>; N], Vec<usize>), TableError> {
     let mut columns = [const { Vec::new() }; N];
     let mut lines = Vec::new();
     let mut header_allowed = true;

@@ -7,10 +7,10 @@ use crate::math::instructions::Instructions;
 use crate::math::lanes::{Double, Scalar, Single};
 use crate::math::twice::Twice;
 
-/// A scalar whose lanes every instruction set can run.
-pub trait Runs: Scalar {
+/// A scalar in which paths of C wavelengths run, on every instruction set.
+pub trait Runs<const C: usize>: Scalar {
     /// Renders a chunk of requested samples on the given instruction set.
-    fn chunk<const C: usize>(
+    fn chunk(
         level: Instructions,
         scene: &(Model<Self>, Spectrometer<Self>),
         requests: &chunk::Requests,
@@ -19,13 +19,13 @@ pub trait Runs: Scalar {
 }
 
 macro_rules! runs {
-    ($scalar:ty, $lanes:ident) => {
-        impl Runs for $scalar {
-            fn chunk<const C: usize>(
+    ($scalar:ty, $wavelengths:literal, $lanes:ident) => {
+        impl Runs<$wavelengths> for $scalar {
+            fn chunk(
                 level: Instructions,
                 (model, spectrometer): &(Model<Self>, Spectrometer<Self>),
                 requests: &chunk::Requests,
-                workspace: &mut Workspace<Self, C>,
+                workspace: &mut Workspace<Self, $wavelengths>,
             ) {
                 macro_rules! on {
                     ($simd:expr) => {
@@ -55,5 +55,7 @@ macro_rules! runs {
     };
 }
 
-runs!(f32, Single);
-runs!(f64, Double);
+runs!(f32, 4, Single);
+runs!(f32, 8, Single);
+runs!(f64, 4, Double);
+runs!(f64, 8, Double);

@@ -109,12 +109,12 @@ fn squash(z: f64) -> f64 {
 }
 
 /// The sigmoid of the polynomial at wavelength `nm`.
-pub(crate) fn sigmoid(coefficients: &[f64; 3], nm: f64) -> f64 {
+pub fn sigmoid(coefficients: &[f64; 3], nm: f64) -> f64 {
     squash(polynomial(coefficients, centred(nm)))
 }
 
 /// Bounds of the sigmoid over 360–830 nm: its values at both ends and at the vertex.
-pub(crate) fn sigmoid_range(coefficients: &[f64; 3]) -> [f64; 2] {
+pub fn sigmoid_range(coefficients: &[f64; 3]) -> [f64; 2] {
     let [c0, c1, c2] = *coefficients;
     let vertex = -c1 / (2.0 * c2);
     let candidates = [-1.0, 1.0, if vertex.abs() < 1.0 { vertex } else { 1.0 }];

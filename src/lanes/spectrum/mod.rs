@@ -199,7 +199,7 @@ impl Spectrum {
 
     /// Intervals over which the spectrum goes linearly from one value to another, nm: a single
     /// wavelength where it jumps. Smooth spectra have none.
-    pub(crate) fn rises(&self) -> Vec<[f64; 2]> {
+    pub fn rises(&self) -> Vec<[f64; 2]> {
         match self {
             Self::Table(table) => table.rises(),
             Self::Constant(_)

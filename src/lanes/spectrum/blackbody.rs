@@ -27,7 +27,7 @@ pub fn radiance(kelvin: f64, nm: f64) -> f64 {
 }
 
 /// Bounds of the radiance over 360–830 nm: it rises to Wien's peak and falls after it.
-pub(crate) fn range(kelvin: f64) -> [f64; 2] {
+pub fn range(kelvin: f64) -> [f64; 2] {
     if kelvin <= 0.0 {
         return [0.0; 2];
     }

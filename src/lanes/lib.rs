@@ -1,0 +1,18 @@
+//! The path loop of etalon and all that it is made of: numbers in lanes, shapes, fields, spectra,
+//! samplers, lights, materials, cameras.
+//!
+//! Everything that is compiled once for each instruction set and precision is compiled here, so
+//! that what stands above (scene files, plans, films, commands) is built without it. No room knows
+//! of scenes or files; the table of rooms stands in the documentation of the crate `etalon`, which
+//! is the one to use.
+
+pub mod camera;
+pub mod field;
+pub mod integrate;
+pub mod light;
+pub mod material;
+pub mod math;
+pub mod root;
+pub mod sample;
+pub mod shape;
+pub mod spectrum;
