@@ -48,7 +48,7 @@ NEAR_CLIP = 1e-6
 # Distance between the two copies of a surface that emits on both sides, over the largest coordinate on
 # the way to it: 64 roundings of single precision, so that rays tell the copies apart.
 SIDES_GAP = 64 * 2.0**-24
-# Sellmeier coefficients B and C (µm²) of src/spectrum/glass.rs, where the sources are named.
+# Sellmeier coefficients B and C (µm²) of src/lanes/spectrum/glass.rs, where the sources are named.
 GLASSES = {
     "n-bk7": ([1.03961212, 0.231792344, 1.01046945], [0.00600069867, 0.0200179144, 103.560653]),
     "n-sf10": ([1.62153902, 0.256287842, 1.64447552], [0.0122241457, 0.0595736775, 147.468793]),

@@ -221,9 +221,7 @@ impl<'a, T: Scalar> Builder<'a, T> {
             }
         }
         if let Some(bounds) = super::extent::bounds(&object.shape, &to_world) {
-            if kind.is_some() {
-                self.bounded.push((index as u32, bounds));
-            }
+            self.bounded.push((index as u32, bounds));
         } else {
             self.unbounded.push(index as u32);
         }

@@ -26,17 +26,7 @@ pub fn bounds(shape: &Shape, to_world: &Affine) -> Option<Bounds> {
         Shape::Disk | Shape::Rectangle => (DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.0)),
         Shape::Implicit(implicit) => (implicit.inside[0], implicit.inside[1]),
     };
-    let centre = to_world.point((low + high) / 2.0);
-    let half = (high - low) / 2.0;
-    let reach = DVec3::from_array(
-        to_world
-            .rows
-            .map(|row| row[0].abs() * half.x + row[1].abs() * half.y + row[2].abs() * half.z),
-    );
-    Some(Bounds {
-        low: centre - reach,
-        high: centre + reach,
-    })
+    Some(Bounds::of_image(to_world, low, high))
 }
 
 /// Distance between two boxes; 0 where they touch or overlap.

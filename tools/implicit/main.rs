@@ -137,8 +137,7 @@ fn stepping<L: Lanes<Scalar = f64>>(l: L, surface: &Surface, packets: &[Packet])
                 |v: &[[f64; WIDTH]; 3]| Vec3::new(l.load(&v[0]), l.load(&v[1]), l.load(&v[2]));
             let ray = LaneRay::<L>::new(l, vector(&packet.origin), vector(&packet.direction));
             let active = l.mask_from_bits(packet.active);
-            let limit = l.real(f64::INFINITY);
-            let (_, hit) = surface.stepping.first_change(l, &ray, start, limit, active);
+            let (_, hit) = surface.stepping.first_change(l, &ray, start, active);
             found = found.wrapping_add(etalon::math::lanes::Mask::bits(hit));
         }
         found

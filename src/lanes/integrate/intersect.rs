@@ -10,7 +10,7 @@ use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 use crate::shape::Tally;
 use crate::shape::implicit::placed::ImplicitTally;
-use crate::shape::lanes::implicit::StartSign;
+use crate::shape::lanes::implicit::{LaneImplicit, StartSign};
 use crate::shape::lanes::{Enclosure, LaneRay, Span};
 use crate::shape::resolve::Departure;
 
@@ -49,6 +49,17 @@ pub struct Leaving<L: Lanes> {
     pub object: L::Int,
     /// Whether they go into it.
     pub inward: L::Mask,
+}
+
+impl<L: Lanes> Leaving<L> {
+    /// What the rays know of an implicit surface at their start.
+    #[inline(always)]
+    pub(super) fn start_sign(&self, l: L, object: u32) -> StartSign<L> {
+        StartSign {
+            on: self.object.same(l.int(object)),
+            inward: self.inward,
+        }
+    }
 }
 
 /// The closest hits of a packet.
@@ -152,6 +163,35 @@ fn departure<L: Lanes>(l: L, leaving: &Leaving<L>, i: usize) -> Departure {
     }
 }
 
+/// The closest hits on implicit surfaces, whose finders answer with a distance or not at all.
+#[derive(Clone, Copy)]
+pub(super) struct FieldHits<L: Lanes> {
+    /// Distance; a limit where nothing is hit before it.
+    pub t: L::Real,
+    /// Part; [`NOTHING`] at first.
+    pub part: L::Int,
+}
+
+impl<L: Lanes> FieldHits<L> {
+    /// Asks an implicit surface, for the lanes in `asked`.
+    #[inline(always)]
+    pub fn ask(
+        &mut self,
+        l: L,
+        model: &Model<L::Scalar>,
+        (object, implicit): (u32, &LaneImplicit<L::Scalar>),
+        (ray, leaving): (&LaneRay<L>, &Leaving<L>),
+        asked: L::Mask,
+        tally: &mut ImplicitTally,
+    ) {
+        let start = leaving.start_sign(l, object);
+        let (t, found) = implicit.first_hit(l, ray, start, self.t, asked, tally);
+        self.t = l.select(found, t, self.t);
+        let part = l.int(model.parts.first[object as usize]);
+        self.part = l.select_int(found, part, self.part);
+    }
+}
+
 /// The closest certain hits so far, and the earliest crossing that could be before them.
 pub(super) struct Search<L: Lanes> {
     /// Where the closest certain hit is; infinite at first.
@@ -160,6 +200,10 @@ pub(super) struct Search<L: Lanes> {
     pub part: L::Int,
     /// Where the earliest of all other possible crossings could be.
     pub rival: L::Real,
+    /// Hits on implicit surfaces that were asked on the way.
+    pub fields: FieldHits<L>,
+    /// What decided those.
+    pub tally: ImplicitTally,
 }
 
 impl<L: Lanes> Search<L> {
@@ -173,7 +217,18 @@ impl<L: Lanes> Search<L> {
             },
             part: l.int(NOTHING),
             rival: infinite,
+            fields: FieldHits {
+                t: infinite,
+                part: l.int(NOTHING),
+            },
+            tally: ImplicitTally::default(),
         }
+    }
+
+    /// Where whatever comes later cannot count any more.
+    #[inline(always)]
+    pub fn limit(&self) -> L::Real {
+        self.fields.t.min(self.best.high)
     }
 
     /// Asks one object, for the lanes in `asked`.
@@ -211,7 +266,7 @@ impl<L: Lanes> Search<L> {
         self.part = l.select_int(take, part, self.part);
     }
 
-    /// The same as one copy of code, for the hierarchy.
+    /// The same of any object, as one copy of code, for the hierarchy.
     #[inline(never)]
     pub fn ask_alone(
         &mut self,
@@ -224,7 +279,13 @@ impl<L: Lanes> Search<L> {
     ) {
         l.vectorize(
             #[inline(always)]
-            || self.ask(l, model, k, ray, leaving, asked),
+            || match model.implicit(k) {
+                Some(implicit) => {
+                    let (rays, tally) = ((ray, leaving), &mut self.tally);
+                    self.fields.ask(l, model, (k, implicit), rays, asked, tally);
+                }
+                None => self.ask(l, model, k, ray, leaving, asked),
+            },
         );
     }
 }
@@ -272,18 +333,24 @@ pub fn nearest<L: Lanes>(
                 best.t = l.with_lane(best.t, i, L::Scalar::from_f64(t));
                 best.part = l.with_int_lane(best.part, i, part);
             }
-            for (object, implicit) in &model.implicits {
-                let index = l.int(*object);
-                let start = StartSign {
-                    on: leaving.object.same(index),
-                    inward: leaving.inward,
-                };
-                let tally = &mut rungs.implicit;
-                let (t, found) = implicit.first_hit(l, ray, start, best.t, active, tally);
-                best.t = l.select(found, t, best.t);
-                let part = l.int(model.parts.first[*object as usize]);
-                best.part = l.select_int(found, part, best.part);
+            rungs.implicit = rungs.implicit.joined(search.tally);
+            let mut fields = FieldHits {
+                t: best.t,
+                part: best.part,
+            };
+            if model.hierarchy.is_none() {
+                for (object, implicit) in &model.implicits {
+                    let tally = &mut rungs.implicit;
+                    let asked = (*object, implicit);
+                    fields.ask(l, model, asked, (ray, leaving), active, tally);
+                }
+            } else {
+                let closer = search.fields.t.lt(best.t);
+                fields.t = l.select(closer, search.fields.t, best.t);
+                fields.part = l.select_int(closer, search.fields.part, best.part);
             }
+            best.t = fields.t;
+            best.part = fields.part;
             best
         },
     )
@@ -304,6 +371,8 @@ pub struct Shadow<L: Lanes> {
 pub(super) struct Blocks<L: Lanes> {
     pub blocked: L::Mask,
     pub doubtful: L::Mask,
+    /// What decided about the implicit surfaces that were asked on the way.
+    pub tally: ImplicitTally,
 }
 
 impl<L: Lanes> Blocks<L> {
@@ -312,6 +381,7 @@ impl<L: Lanes> Blocks<L> {
         Self {
             blocked: l.mask(false),
             doubtful: l.mask(false),
+            tally: ImplicitTally::default(),
         }
     }
 
@@ -344,7 +414,24 @@ impl<L: Lanes> Blocks<L> {
         self.doubtful = self.doubtful | (c.possible & c.at.low.lt(limit));
     }
 
-    /// The same as one copy of code, for the hierarchy.
+    /// Asks an implicit surface, for the lanes in `asked` that are not blocked.
+    #[inline(always)]
+    fn ask_field(
+        &mut self,
+        l: L,
+        (object, implicit): (u32, &LaneImplicit<L::Scalar>),
+        shadow: &Shadow<L>,
+        leaving: &Leaving<L>,
+        asked: L::Mask,
+    ) {
+        let start = leaving.start_sign(l, object);
+        let wanted = asked & !self.blocked & !shadow.except.same(l.int(object));
+        let (ray, limit) = (&shadow.ray, shadow.limit);
+        let (_, found) = implicit.first_hit(l, ray, start, limit, wanted, &mut self.tally);
+        self.blocked = self.blocked | (found & wanted);
+    }
+
+    /// Asks any object, as one copy of code, for the hierarchy.
     #[inline(never)]
     pub fn ask_alone(
         &mut self,
@@ -357,7 +444,10 @@ impl<L: Lanes> Blocks<L> {
     ) {
         l.vectorize(
             #[inline(always)]
-            || self.ask(l, model, k, shadow, leaving, asked),
+            || match model.implicit(k) {
+                Some(implicit) => self.ask_field(l, (k, implicit), shadow, leaving, asked),
+                None => self.ask(l, model, k, shadow, leaving, asked),
+            },
         );
     }
 }
@@ -378,16 +468,12 @@ pub fn occluded<L: Lanes>(
     l.vectorize(
         #[inline(always)]
         || {
-            let blocks = match &model.hierarchy {
+            let mut blocks = match &model.hierarchy {
                 None => list::blocks(l, model, &model.occluders, shadow, leaving, active),
                 Some(many) => many::blocks(l, model, many, shadow, leaving, active),
             };
-            let Blocks {
-                mut blocked,
-                doubtful,
-            } = blocks;
             rungs.rays += u64::from(active.bits().count_ones());
-            let unsure = active & doubtful & !blocked;
+            let unsure = active & blocks.doubtful & !blocks.blocked;
             rungs.undecided += u64::from(unsure.bits().count_ones());
             let mut answers = 0;
             for i in each(unsure.bits()) {
@@ -406,20 +492,14 @@ pub fn occluded<L: Lanes>(
                 );
                 answers |= u32::from(hidden) << i;
             }
-            blocked = blocked | l.mask_from_bits(answers);
-            for (object, implicit) in model.implicits.iter().filter(|(k, _)| model.hides(*k)) {
-                let index = l.int(*object);
-                let start = StartSign {
-                    on: leaving.object.same(index),
-                    inward: leaving.inward,
-                };
-                let wanted = active & !blocked & !shadow.except.same(index);
-                let (ray, limit) = (&shadow.ray, shadow.limit);
-                let tally = &mut rungs.implicit;
-                let (_, found) = implicit.first_hit(l, ray, start, limit, wanted, tally);
-                blocked = blocked | (found & wanted);
+            blocks.blocked = blocks.blocked | l.mask_from_bits(answers);
+            if model.hierarchy.is_none() {
+                for (object, implicit) in model.implicits.iter().filter(|(k, _)| model.hides(*k)) {
+                    blocks.ask_field(l, (*object, implicit), shadow, leaving, active);
+                }
             }
-            blocked
+            rungs.implicit = rungs.implicit.joined(blocks.tally);
+            blocks.blocked
         },
     )
 }

@@ -4,13 +4,15 @@
 //! one, and the lanes are boxes, or balls: the answers for a ray depend neither on its neighbours
 //! nor on their number.
 
-use super::intersect::{Asked, Blocks, Candidate, Leaving, Search, Shadow, candidate};
+use super::intersect::{Asked, Blocks, Candidate, FieldHits, Leaving, Search, Shadow, candidate};
 use super::model::{Many, Model};
 use super::pool::{WIDEST, array, each, int_array};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
 use crate::math::vec3::Vec3;
 use crate::shape::hierarchy::{BoxRay, Child, Descent, WIDTH};
+use crate::shape::implicit::placed::ImplicitTally;
 use crate::shape::lanes::balls::Balls;
+use crate::shape::lanes::implicit::LaneImplicit;
 use crate::shape::lanes::{Enclosure, LaneRay};
 
 /// A packet's rays as arrays, to be taken one by one.
@@ -22,13 +24,6 @@ struct Rays<T> {
     inverse_square: [T; WIDEST],
     leaving: [u32; WIDEST],
     inward: u32,
-}
-
-/// 1/d.
-#[inline(always)]
-fn reciprocal<L: Lanes>(l: L, d: Vec3<L::Real>) -> Vec3<L::Real> {
-    let one = l.real(1.0);
-    Vec3::new(one / d.x, one / d.y, one / d.z)
 }
 
 impl<T: Scalar> Rays<T> {
@@ -138,15 +133,51 @@ impl<N: Lanes> Lone<N> {
     }
 }
 
+impl<N: Lanes> Lone<N> {
+    /// Where an implicit surface is hit before the limit.
+    #[inline(never)]
+    fn ask_field(
+        &self,
+        n: N,
+        (object, implicit): (u32, &LaneImplicit<N::Scalar>),
+        limit: N::Scalar,
+        tally: &mut ImplicitTally,
+    ) -> Option<N::Scalar> {
+        n.vectorize(
+            #[inline(always)]
+            || {
+                let start = self.leaving.start_sign(n, object);
+                let (limit, first) = (n.splat(limit), n.mask_from_bits(1));
+                let (t, found) = implicit.first_hit(n, &self.ray, start, limit, first, tally);
+                found.any().then(|| n.lane(t, 0))
+            },
+        )
+    }
+}
+
 /// One ray's closest certain hit so far and what could be before it, as in [`Search`].
 struct Closest<T> {
     low: T,
     high: T,
     part: u32,
     rival: T,
+    /// The closest hit on an implicit surface and its part.
+    field: (T, u32),
+    /// What decided about those.
+    tally: ImplicitTally,
 }
 
 impl<T: Scalar> Closest<T> {
+    /// Where whatever comes later cannot count any more.
+    #[inline(always)]
+    fn limit(&self) -> T {
+        if self.field.0 < self.high {
+            self.field.0
+        } else {
+            self.high
+        }
+    }
+
     /// Counts the lanes of `bits`, whose objects have parts by `part_of`.
     #[inline(always)]
     fn take<N: Lanes<Scalar = T>>(
@@ -195,8 +226,8 @@ pub(super) fn search<L: Lanes>(
             for &k in &many.broad {
                 search.ask_alone(l, model, k, ray, leaving, active);
             }
-            let inverse = reciprocal(l, ray.direction);
-            let met = many.boxes.meets(l, ray.origin, inverse, search.best.high);
+            let inverse = ray.direction.reciprocal(l);
+            let met = many.boxes.all.meets(l, ray.origin, inverse, search.limit());
             let met = (active & met).bits();
             if met == 0 {
                 return search;
@@ -205,6 +236,9 @@ pub(super) fn search<L: Lanes>(
             let mut high = array(l, search.best.high);
             let mut part = int_array(l, search.part);
             let mut rival = array(l, search.rival);
+            let mut field_t = array(l, search.fields.t);
+            let mut field_part = int_array(l, search.fields.part);
+            let mut tally = search.tally;
             let n = l.narrow();
             let rays = Rays::new(l, ray, inverse, leaving);
             let mut descent = Descent::new();
@@ -214,6 +248,8 @@ pub(super) fn search<L: Lanes>(
                     high: high[i],
                     part: part[i],
                     rival: rival[i],
+                    field: (field_t[i], field_part[i]),
+                    tally,
                 };
                 descent.restart();
                 closest_along(n, model, many, &rays.lone(n, i), &mut descent, &mut closest);
@@ -221,6 +257,8 @@ pub(super) fn search<L: Lanes>(
                 high[i] = closest.high;
                 part[i] = closest.part;
                 rival[i] = closest.rival;
+                (field_t[i], field_part[i]) = closest.field;
+                tally = closest.tally;
             }
             Search {
                 best: Enclosure {
@@ -229,6 +267,11 @@ pub(super) fn search<L: Lanes>(
                 },
                 part: l.load_int(&part),
                 rival: l.load(&rival),
+                fields: FieldHits {
+                    t: l.load(&field_t),
+                    part: l.load_int(&field_part),
+                },
+                tally,
             }
         },
     )
@@ -247,12 +290,12 @@ fn closest_along<N: Lanes>(
     let first = |object: u32| model.parts.first[object as usize];
     while let Some(child) = many
         .boxes
-        .next::<N, true>(n, descent, &lone.boxes, closest.high)
+        .next::<N, true>(n, descent, &lone.boxes, closest.limit())
     {
         match child {
             Child::Balls(balls) => {
                 for from in (0..balls.count).step_by(N::COUNT) {
-                    let asked = lone.ask_balls(n, balls, from, closest.high);
+                    let asked = lone.ask_balls(n, balls, from, closest.limit());
                     let Some((candidate, asked, _)) = asked else {
                         continue;
                     };
@@ -263,7 +306,13 @@ fn closest_along<N: Lanes>(
                 }
             }
             Child::Object(k) => {
-                if let Some(candidate) = lone.ask_object(n, model, k, closest.high) {
+                if let Some(implicit) = model.implicit(k) {
+                    let limit = closest.limit();
+                    let tally = &mut closest.tally;
+                    if let Some(t) = lone.ask_field(n, (k, implicit), limit, tally) {
+                        closest.field = (t, first(k));
+                    }
+                } else if let Some(candidate) = lone.ask_object(n, model, k, closest.limit()) {
                     let bits = candidate.possible.bits() & 1;
                     closest.take(n, &candidate, bits, |_| {
                         first(k) + n.int_lane(candidate.part, 0)
@@ -291,10 +340,9 @@ pub(super) fn blocks<L: Lanes>(
             for &k in many.broad.iter().filter(|k| many.hides[**k as usize]) {
                 blocks.ask_alone(l, model, k, shadow, leaving, active);
             }
-            let inverse = reciprocal(l, shadow.ray.direction);
-            let met = many
-                .boxes
-                .meets(l, shadow.ray.origin, inverse, shadow.limit);
+            let inverse = shadow.ray.direction.reciprocal(l);
+            let (origin, limit) = (shadow.ray.origin, shadow.limit);
+            let met = many.boxes.all.meets(l, origin, inverse, limit);
             let met = (active & met & !blocks.blocked).bits();
             if met == 0 {
                 return blocks;
@@ -312,7 +360,7 @@ pub(super) fn blocks<L: Lanes>(
                     limit: limits[i],
                     except: n.int(excepted[i]),
                 };
-                let found = block_along(n, model, many, &lone, &end, &mut descent);
+                let found = block_along(n, model, &lone, &end, (&mut descent, &mut blocks.tally));
                 blocked |= u32::from(found == Block::Sure) << i;
                 doubtful |= u32::from(found == Block::Doubtful) << i;
             }
@@ -358,12 +406,14 @@ impl<N: Lanes> End<N> {
 fn block_along<N: Lanes>(
     n: N,
     model: &Model<N::Scalar>,
-    many: &Many<N::Scalar>,
     lone: &Lone<N>,
     end: &End<N>,
-    descent: &mut Descent<N::Scalar>,
+    (descent, tally): (&mut Descent<N::Scalar>, &mut ImplicitTally),
 ) -> Block {
     let mut all = Block::Nothing;
+    let Some(many) = &model.hierarchy else {
+        return all;
+    };
     while let Some(child) = many
         .boxes
         .next::<N, false>(n, descent, &lone.boxes, end.limit)
@@ -378,13 +428,21 @@ fn block_along<N: Lanes>(
                 }
                 found
             }
-            Child::Object(k) if many.hides[k as usize] => {
-                match lone.ask_object(n, model, k, end.limit) {
-                    Some(c) => end.judge(n, &c, n.mask(true), n.int(k)),
-                    None => Block::Nothing,
+            Child::Object(k) if !many.hides[k as usize] => Block::Nothing,
+            Child::Object(k) => {
+                if let Some(implicit) = model.implicit(k) {
+                    let counts = !end.except.same(n.int(k)).any();
+                    let hit = counts
+                        .then(|| lone.ask_field(n, (k, implicit), end.limit, tally))
+                        .flatten();
+                    hit.map_or(Block::Nothing, |_| Block::Sure)
+                } else {
+                    match lone.ask_object(n, model, k, end.limit) {
+                        Some(c) => end.judge(n, &c, n.mask(true), n.int(k)),
+                        None => Block::Nothing,
+                    }
                 }
             }
-            Child::Object(_) => Block::Nothing,
         };
         if found == Block::Sure {
             return Block::Sure;
@@ -407,7 +465,7 @@ pub(super) fn candidates<L: Lanes>(
 ) -> Option<Vec<u32>> {
     let many = model.hierarchy.as_ref()?;
     let n = l.narrow();
-    let lone = Rays::new(l, ray, reciprocal(l, ray.direction), leaving).lone(n, i);
+    let lone = Rays::new(l, ray, ray.direction.reciprocal(l), leaving).lone(n, i);
     let before = |c: &Candidate<L::Narrow>| c.possible & c.at.low.le(n.splat(limit));
     let mut descent = Descent::new();
     descent.restart();

@@ -160,7 +160,7 @@ pub struct Model<T: Scalar> {
     pub list: List<T>,
     /// The objects that shadow rays are tested against.
     pub occluders: List<T>,
-    /// Implicit surfaces: (object, surface).
+    /// Implicit surfaces: (object, surface), in order of the objects.
     pub implicits: Vec<(u32, LaneImplicit<T>)>,
     /// What hits look like, by part.
     pub parts: Parts<T>,
@@ -182,6 +182,16 @@ pub struct Model<T: Scalar> {
 }
 
 impl<T: Scalar> Model<T> {
+    /// The implicit surface that an object is, if it is one.
+    #[inline(always)]
+    pub fn implicit(&self, object: u32) -> Option<&LaneImplicit<T>> {
+        if self.shapes[object as usize].kind.is_some() {
+            return None;
+        }
+        let place = self.implicits.binary_search_by_key(&object, |(k, _)| *k);
+        Some(&self.implicits.get(place.ok()?)?.1)
+    }
+
     /// Whether an object can hide a light from a surface.
     pub fn hides(&self, object: u32) -> bool {
         self.occluders.objects.binary_search(&object).is_ok()

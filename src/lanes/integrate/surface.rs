@@ -314,14 +314,12 @@ fn implicit_surface<L: Lanes>(
     let inverse = &shape.inverse;
     let local = inverse.point(l, point);
     let mut normal = local;
-    for (k, implicit) in &model.implicits {
-        if *k == object {
-            let scales = [point.max_abs(), reach];
-            let direction = inverse.vector(l, direction);
-            let (outward, step) = implicit.surface(l, local, direction, scales, here);
-            normal = outward;
-            point = point - shape.forward.vector(l, step);
-        }
+    if let Some(implicit) = model.implicit(object) {
+        let scales = [point.max_abs(), reach];
+        let direction = inverse.vector(l, direction);
+        let (outward, step) = implicit.surface(l, local, direction, scales, here);
+        normal = outward;
+        point = point - shape.forward.vector(l, step);
     }
     LaneSurface {
         point,

@@ -74,6 +74,13 @@ impl<R: Real> Vec3<R> {
         self.scale(l.real(1.0) / self.length_squared().sqrt())
     }
 
+    /// 1 over each component.
+    #[inline(always)]
+    pub fn reciprocal<L: Lanes<Real = R>>(self, l: L) -> Self {
+        let one = l.real(1.0);
+        Self::new(one / self.x, one / self.y, one / self.z)
+    }
+
     /// Largest magnitude of a component.
     #[inline(always)]
     pub fn max_abs(self) -> R {

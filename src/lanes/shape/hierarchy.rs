@@ -11,6 +11,7 @@ use glam::DVec3;
 
 use super::lanes::LaneShape;
 use super::lanes::balls::{Balls, MOST};
+use crate::math::affine::Affine;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
 use crate::math::vec3::Vec3;
 use split::split;
@@ -57,11 +58,73 @@ impl Bounds {
         boxes.fold(Self::NOTHING, Self::union)
     }
 
+    /// Around the image of the box from `low` to `high`.
+    pub fn of_image(to_world: &Affine, low: DVec3, high: DVec3) -> Self {
+        let centre = to_world.point((low + high) / 2.0);
+        let half = (high - low) / 2.0;
+        let reach = to_world
+            .rows
+            .map(|row| row[0].abs() * half.x + row[1].abs() * half.y + row[2].abs() * half.z);
+        let reach = DVec3::from_array(reach);
+        Self {
+            low: centre - reach,
+            high: centre + reach,
+        }
+    }
+
     /// Half its surface, to which the number of random lines that meet it is proportional; 0 for
     /// nothing.
     pub fn half_area(&self) -> f64 {
         let side = (self.high - self.low).max(DVec3::ZERO);
         side.x * side.y + side.y * side.z + side.z * side.x
+    }
+}
+
+/// A box in the numbers of the loop, rounded outward.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct OuterBox<T> {
+    /// Lower and upper ends by axis.
+    ends: [[T; 2]; 3],
+}
+
+impl<T: Scalar> OuterBox<T> {
+    /// Around a box.
+    pub fn new(bounds: &Bounds) -> Self {
+        Self {
+            ends: [0, 1, 2].map(|axis| {
+                let (low, high) = outward::<T>(bounds.low[axis], bounds.high[axis]);
+                [low, high]
+            }),
+        }
+    }
+
+    /// Which rays, one a lane, may meet the box before their limits: no ray that does is left out.
+    /// `inverse` are the reciprocals of the direction's components.
+    #[inline(always)]
+    pub fn meets<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        origin: Vec3<L::Real>,
+        inverse: Vec3<L::Real>,
+        limit: L::Real,
+    ) -> L::Mask {
+        let zero = l.real(0.0);
+        let (mut near, mut far) = (zero, limit);
+        let axes = [
+            (origin.x, inverse.x),
+            (origin.y, inverse.y),
+            (origin.z, inverse.z),
+        ];
+        for (ends, (o, inverse)) in self.ends.iter().zip(axes) {
+            let (low, high) = (l.splat(ends[0]), l.splat(ends[1]));
+            let backwards = inverse.lt(zero);
+            let ends = [
+                l.select(backwards, high, low),
+                l.select(backwards, low, high),
+            ];
+            narrow::<L>(&mut near, &mut far, ends, o, inverse);
+        }
+        met(l, near, far).1
     }
 }
 
@@ -99,8 +162,8 @@ struct Node<T> {
 pub struct Hierarchy<T> {
     nodes: Vec<Node<T>>,
     balls: Vec<Balls<T>>,
-    /// Lower and upper ends of the box around all, by axis.
-    all: [[T; 2]; 3],
+    /// The box around all.
+    pub all: OuterBox<T>,
 }
 
 /// One ray for box tests, the same in all lanes.
@@ -178,14 +241,10 @@ impl<T: Scalar> Default for Descent<T> {
 impl<T: Scalar> Hierarchy<T> {
     /// Builds the boxes over objects of the given shapes.
     pub fn new(objects: &[Item], shapes: &[LaneShape<T>]) -> Self {
-        let all = Bounds::around(objects);
         let mut hierarchy = Self {
             nodes: Vec::new(),
             balls: Vec::new(),
-            all: [0, 1, 2].map(|axis| {
-                let (low, high) = outward::<T>(all.low[axis], all.high[axis]);
-                [low, high]
-            }),
+            all: OuterBox::new(&Bounds::around(objects)),
         };
         let mut order = objects.to_vec();
         hierarchy.node(&mut order, shapes, 0);
@@ -237,35 +296,6 @@ impl<T: Scalar> Hierarchy<T> {
             [object] => word::OBJECT | object,
             _ => word::NODE | self.node(objects, shapes, level + 1),
         }
-    }
-
-    /// Which rays, one a lane, meet the box around all before their limits; `inverse` are the
-    /// reciprocals of the direction's components.
-    #[inline(always)]
-    pub fn meets<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        origin: Vec3<L::Real>,
-        inverse: Vec3<L::Real>,
-        limit: L::Real,
-    ) -> L::Mask {
-        let zero = l.real(0.0);
-        let (mut near, mut far) = (zero, limit);
-        let axes = [
-            (origin.x, inverse.x),
-            (origin.y, inverse.y),
-            (origin.z, inverse.z),
-        ];
-        for (ends, (o, inverse)) in self.all.iter().zip(axes) {
-            let (low, high) = (l.splat(ends[0]), l.splat(ends[1]));
-            let backwards = inverse.lt(zero);
-            let ends = [
-                l.select(backwards, high, low),
-                l.select(backwards, low, high),
-            ];
-            narrow::<L>(&mut near, &mut far, ends, o, inverse);
-        }
-        met(l, near, far).1
     }
 
     /// What the ray meets the box of before `limit` next: nearest boxes first, where `ORDERED`, so that

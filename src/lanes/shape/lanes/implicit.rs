@@ -16,6 +16,7 @@ use crate::math::affine::Affine;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, WIDEST, inlined};
 use crate::math::vec3::{Rows, Vec3};
 use crate::shape::SingularMatrix;
+use crate::shape::hierarchy::{Bounds, OuterBox};
 use crate::shape::implicit::Implicit;
 use crate::shape::implicit::certified::{Packet, WIDTH, Workspace};
 use crate::shape::implicit::placed::{Finder, ImplicitTally};
@@ -34,6 +35,8 @@ pub struct LaneImplicit<T> {
     half: [T; 3],
     steps: u32,
     inverse: Rows<T>,
+    /// The clip box's image.
+    bounds: OuterBox<T>,
     /// 16 unit roundoffs of a world coordinate of 1, as a length in object coordinates.
     rounding: T,
     finder: Finder,
@@ -80,6 +83,7 @@ impl<T: Scalar> LaneImplicit<T> {
             half: half.to_array().map(T::from_f64),
             steps: implicit.steps,
             inverse: Rows::from_f64(&inverse.rows),
+            bounds: OuterBox::new(&Bounds::of_image(to_world, inside[0], inside[1])),
             rounding: T::from_f64(16.0 * T::ROUNDOFF * largest_row),
             finder: Finder::new(implicit, to_world)?,
             level: Level::new(),
@@ -92,6 +96,9 @@ impl<T: Scalar> LaneImplicit<T> {
     }
 
     /// The first hits before `limit`; where the mask is false, none is known.
+    ///
+    /// The ray is clipped to the surface's own box and the hit compared with the limit afterwards, so
+    /// that a hit does not depend, in its last digits, on what else was asked before.
     #[inline(always)]
     pub fn first_hit<L: Lanes<Scalar = T>>(
         &self,
@@ -102,18 +109,24 @@ impl<T: Scalar> LaneImplicit<T> {
         active: L::Mask,
         tally: &mut ImplicitTally,
     ) -> (L::Real, L::Mask) {
-        match &self.finder {
+        let inverse = ray.direction.reciprocal(l);
+        let active = active & self.bounds.meets(l, ray.origin, inverse, limit);
+        if !active.any() {
+            return (limit, active);
+        }
+        let (t, found) = match &self.finder {
             Finder::SignChange => {
                 tally.uncertified += u64::from(active.bits().count_ones());
-                self.first_change(l, ray, start, limit, active)
+                self.first_change(l, ray, start, active)
             }
             finder => {
-                let rays = PacketRays::new(l, ray, limit);
+                let rays = PacketRays::new(l, ray);
                 let bits = [active.bits(), start.on.bits()];
                 let (t, found) = rays.ask(finder, self.level, bits, L::COUNT, tally);
                 (l.load(&t), l.mask_from_bits(found))
             }
-        }
+        };
+        (t, found & t.lt(limit))
     }
 
     /// Outward normals at object points that are met in these directions: the gradient, of any
@@ -176,14 +189,13 @@ impl<T: Scalar> LaneImplicit<T> {
         gradient
     }
 
-    /// The first sign change along each ray before `limit`; where the mask is false, none.
+    /// The first sign change along each ray; where the mask is false, none.
     #[inline(never)]
     pub fn first_change<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         ray: &LaneRay<L>,
         start: StartSign<L>,
-        limit: L::Real,
         active: L::Mask,
     ) -> (L::Real, L::Mask) {
         l.vectorize(
@@ -192,7 +204,7 @@ impl<T: Scalar> LaneImplicit<T> {
                 let o = self.inverse.point(l, ray.origin);
                 let d = self.inverse.vector(l, ray.direction);
                 let zero = l.real(0.0);
-                let (mut near, mut far) = (zero, limit);
+                let (mut near, mut far) = (zero, l.real(f64::INFINITY));
                 for (o, d, c, h) in [
                     (o.x, d.x, self.centre[0], self.half[0]),
                     (o.y, d.y, self.centre[1], self.half[1]),
@@ -271,12 +283,11 @@ impl<T: Scalar> LaneImplicit<T> {
 struct PacketRays<T> {
     origin: [[T; WIDEST]; 3],
     direction: [[T; WIDEST]; 3],
-    limit: [T; WIDEST],
 }
 
 impl<T: Scalar> PacketRays<T> {
     #[inline(always)]
-    fn new<L: Lanes<Scalar = T>>(l: L, ray: &LaneRay<L>, limit: L::Real) -> Self {
+    fn new<L: Lanes<Scalar = T>>(l: L, ray: &LaneRay<L>) -> Self {
         let stored = inlined(
             #[inline(always)]
             |x: L::Real| {
@@ -292,7 +303,6 @@ impl<T: Scalar> PacketRays<T> {
         Self {
             origin: vector(ray.origin),
             direction: vector(ray.direction),
-            limit: stored(limit),
         }
     }
 
@@ -323,7 +333,6 @@ impl<T: Scalar> PacketRays<T> {
                     packet.origin[axis][lane] = self.origin[axis][base + lane].to_f64();
                     packet.direction[axis][lane] = self.direction[axis][base + lane].to_f64();
                 }
-                packet.t_max[lane] = self.limit[base + lane].to_f64();
             }
             let answers = WORKSPACE
                 .with_borrow_mut(|workspace| finder.first_hits(level, &packet, false, workspace));
