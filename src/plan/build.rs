@@ -25,7 +25,7 @@ use crate::shape::hierarchy::Bounds;
 use crate::shape::lanes::LaneShape;
 use crate::shape::lanes::implicit::LaneImplicit;
 use crate::shape::resolve::Resolver;
-use crate::shape::{Placed, ShapeKind};
+use crate::shape::{Emitter, Placed, ShapeKind};
 use crate::spectrum::Spectrum;
 use crate::spectrum::cells;
 use crate::spectrum::grid::{SpectrumBank, WavelengthGrid};
@@ -197,7 +197,7 @@ impl<'a, T: Scalar> Builder<'a, T> {
     fn place(&mut self, scene: &Scene, index: usize) -> Option<Placement> {
         let object = &scene.objects[index].value;
         let to_world = about_camera(scene, object);
-        let kind = ShapeKind::of(&object.shape);
+        let kind = object.shape.kind();
         let placed = Placed::new(kind.unwrap_or(ShapeKind::Cube), &to_world).ok()?;
         let inverse = placed.inverse();
         if !inverse.rows.iter().flatten().all(|x| x.is_finite()) {
@@ -214,7 +214,7 @@ impl<'a, T: Scalar> Builder<'a, T> {
                 let lanes = LaneImplicit::new(implicit, &to_world, &inverse).ok()?;
                 self.implicits.push((index as u32, lanes));
             }
-            _ => {
+            Shape::Canonical(_) => {
                 let surface = &scene.materials[object.material].value.surface;
                 let priority = u8::from(matches!(surface, Surface::Glass(_)));
                 self.resolver.push(index as u32, placed, priority);
@@ -397,8 +397,12 @@ fn area_light<T: Scalar>(
         let row = placement.inverse.rows[axis];
         DVec3::new(row[0], row[1], row[2]).normalize()
     };
-    match object.shape {
-        Shape::Rectangle => {
+    match object
+        .shape
+        .kind()
+        .map_or(Emitter::Unsampled, ShapeKind::emitter)
+    {
+        Emitter::Rectangle => {
             let area = 4.0 * a.cross(b).length();
             let shape = if perpendicular(a, b) {
                 LightShape::Rectangle(RectangleLight::new(centre, [a, b], normal(2), emits))
@@ -407,12 +411,12 @@ fn area_light<T: Scalar>(
             };
             Some((shape, area))
         }
-        Shape::Disk => {
+        Emitter::Disk => {
             let pi = std::f64::consts::PI;
             let light = PlanarLight::new(centre, [a, b], normal(2), pi, emits);
             Some((LightShape::Disk(light), pi * a.cross(b).length()))
         }
-        Shape::Sphere if is_similarity(&placement.to_world) => {
+        Emitter::Sphere if is_similarity(&placement.to_world) => {
             let radius = a.length();
             let light = SphereLight::new(centre, radius, emits);
             Some((
@@ -420,7 +424,7 @@ fn area_light<T: Scalar>(
                 4.0 * std::f64::consts::PI * radius * radius,
             ))
         }
-        Shape::Cube => {
+        Emitter::Cube => {
             let normals = [normal(0), normal(1), normal(2)];
             let area = 8.0 * (a.cross(b).length() + b.cross(c).length() + c.cross(a).length());
             Some((
@@ -428,22 +432,22 @@ fn area_light<T: Scalar>(
                 area,
             ))
         }
-        Shape::Cylinder if is_right_circular(&placement.to_world) => {
+        Emitter::Cylinder if is_right_circular(&placement.to_world) => {
             let (radius, height) = (a.length(), 2.0 * c.length());
             let area = 2.0 * std::f64::consts::PI * radius * (radius + height);
             let light = CylinderLight::new(centre, [a, b], c, emits);
             Some((LightShape::Cylinder(light), area))
         }
-        Shape::Sphere => {
+        Emitter::Sphere => {
             let linear = DMat3::from_cols(a, b, c);
             let light = MappedLight::ellipsoid(centre, linear, emits);
             Some((LightShape::Mapped(light), ellipsoid_area(linear)))
         }
-        Shape::Cylinder => {
+        Emitter::Cylinder => {
             let linear = DMat3::from_cols(a, b, c);
             let light = MappedLight::cylinder(centre, linear, emits);
             Some((LightShape::Mapped(light), cylinder_area(linear)))
         }
-        Shape::Plane | Shape::Implicit(_) => None,
+        Emitter::Unsampled => None,
     }
 }

@@ -6,6 +6,7 @@ use super::faces;
 use crate::camera::pixel_size;
 use crate::math::affine::Affine;
 use crate::scene::{Object, Projection, Scene, Shape};
+use crate::shape::ShapeKind;
 use crate::shape::hierarchy::Bounds;
 
 /// The object's map with the camera at the origin.
@@ -20,12 +21,7 @@ pub fn about_camera(scene: &Scene, object: &Object) -> Affine {
 /// Bounds of a placed shape about the camera: the image of its canonical box; infinite planes have
 /// none.
 pub fn bounds(shape: &Shape, to_world: &Affine) -> Option<Bounds> {
-    let (low, high) = match shape {
-        Shape::Plane => return None,
-        Shape::Sphere | Shape::Cube | Shape::Cylinder => (-DVec3::ONE, DVec3::ONE),
-        Shape::Disk | Shape::Rectangle => (DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.0)),
-        Shape::Implicit(implicit) => (implicit.inside[0], implicit.inside[1]),
-    };
+    let [low, high] = shape.corners()?;
     Some(Bounds::of_image(to_world, low, high))
 }
 
@@ -42,7 +38,7 @@ pub fn reach(bounds: &Bounds) -> f64 {
 
 /// Centre and radius where the object is a sphere under a similarity.
 pub fn as_ball(object: &Object, to_world: &Affine) -> Option<(DVec3, f64)> {
-    if object.shape != Shape::Sphere {
+    if object.shape != Shape::Canonical(ShapeKind::Sphere) {
         return None;
     }
     let axes = columns(to_world);
@@ -129,9 +125,10 @@ fn smallest_between_faces(scene: &Scene) -> f64 {
     let placed: Vec<_> = scene
         .objects
         .iter()
-        .map(|o| {
+        .filter_map(|o| {
             let to_world = about_camera(scene, &o.value);
-            (&o.value.shape, to_world, bounds(&o.value.shape, &to_world))
+            let shape = &o.value.shape;
+            Some((shape.kind()?, to_world, bounds(shape, &to_world)))
         })
         .collect();
     let mut smallest = f64::INFINITY;
@@ -142,7 +139,7 @@ fn smallest_between_faces(scene: &Scene) -> f64 {
                 _ => false,
             };
             if !apart {
-                let between = faces::gap((shape, to_world), (other, other_to_world));
+                let between = faces::gap((*shape, to_world), (*other, other_to_world));
                 smallest = smallest.min(between);
             }
         }

@@ -227,12 +227,7 @@ fn priority(scene: &Scene, object: &Named<Object>) -> u8 {
 /// The canonical shape, or else the implicit surface.
 fn certified_kind(shape: &Shape) -> Result<ShapeKind, &Implicit> {
     match shape {
-        Shape::Sphere => Ok(ShapeKind::Sphere),
-        Shape::Cube => Ok(ShapeKind::Cube),
-        Shape::Cylinder => Ok(ShapeKind::Cylinder),
-        Shape::Disk => Ok(ShapeKind::Disk),
-        Shape::Rectangle => Ok(ShapeKind::Rectangle),
-        Shape::Plane => Ok(ShapeKind::Plane),
+        Shape::Canonical(kind) => Ok(*kind),
         Shape::Implicit(implicit) => Err(implicit),
     }
 }

@@ -25,8 +25,8 @@ use glam::DVec3;
 pub use crate::camera::{Camera, Lens, Projection};
 use crate::math::affine::Affine;
 pub use crate::sample::SamplerKind;
+pub use crate::shape::Shape;
 pub use crate::shape::implicit::{FinderChoice, Implicit};
-pub use crate::shape::{PLAIN, Shape};
 use crate::spectrum::Spectrum;
 use crate::spectrum::ior::RefractiveIndex;
 

@@ -8,11 +8,11 @@ use super::model::Model;
 use super::pool::each;
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
-use crate::shape::Tally;
 use crate::shape::implicit::placed::ImplicitTally;
 use crate::shape::lanes::implicit::{LaneImplicit, StartSign};
 use crate::shape::lanes::{Enclosure, LaneRay, Span};
 use crate::shape::resolve::Departure;
+use crate::shape::{ShapeKind, Tally};
 
 /// Marks rays that hit or leave nothing.
 pub const NOTHING: u32 = u32::MAX;
@@ -86,7 +86,7 @@ pub(super) struct Candidate<L: Lanes> {
 /// The lanes that are asked, each about one object.
 #[derive(Clone, Copy)]
 pub(super) struct Asked<L: Lanes> {
-    /// All of them: rays that leave a convex surface outward, or a flat one, do not meet it again.
+    /// All of them: rays that leave a convex surface outward do not meet it again.
     pub all: L::Mask,
     /// Those that go inward from this object's own surface.
     pub inside: L::Mask,
@@ -94,17 +94,25 @@ pub(super) struct Asked<L: Lanes> {
 
 impl<L: Lanes> Asked<L> {
     #[inline(always)]
-    pub fn new(l: L, objects: L::Int, flat: bool, leaving: &Leaving<L>, asked: L::Mask) -> Self {
+    pub fn new(
+        l: L,
+        objects: L::Int,
+        kind: ShapeKind,
+        leaving: &Leaving<L>,
+        asked: L::Mask,
+    ) -> Self {
         let own = asked & leaving.object.same(objects);
-        let inside = if flat {
+        let inside = if kind.is_flat() {
             l.mask(false)
         } else {
             own & leaving.inward
         };
-        Self {
-            all: (asked & !own) | inside,
-            inside,
-        }
+        let all = if kind.is_convex() {
+            (asked & !own) | inside
+        } else {
+            asked
+        };
+        Self { all, inside }
     }
 
     /// Those that the span does not rule out. A line along the wall of the shape that it goes into
@@ -244,7 +252,7 @@ impl<L: Lanes> Search<L> {
     ) {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
-        let asked = Asked::new(l, l.int(k), kind.is_flat(), leaving, asked);
+        let asked = Asked::new(l, l.int(k), kind, leaving, asked);
         let span = shape.span(l, ray, asked.all, self.best.high);
         if !asked.met(&span).any() {
             return;
@@ -399,7 +407,7 @@ impl<L: Lanes> Blocks<L> {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
         let asked = asked & !shadow.except.same(l.int(k));
-        let asked = Asked::new(l, l.int(k), kind.is_flat(), leaving, asked);
+        let asked = Asked::new(l, l.int(k), kind, leaving, asked);
         let span = shape.span(l, &shadow.ray, asked.all, shadow.limit);
         if !asked.met(&span).any() {
             return;

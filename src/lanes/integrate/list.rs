@@ -5,6 +5,7 @@ use super::intersect::{Asked, Blocks, Leaving, NOTHING, Search, Shadow, candidat
 use super::model::Model;
 use crate::math::lanes::{Int, Lanes, Mask, Scalar};
 use crate::math::lookup::SMALL;
+use crate::shape::ShapeKind;
 use crate::shape::lanes::balls::Balls;
 use crate::shape::lanes::{LaneRay, LaneShape};
 
@@ -78,7 +79,7 @@ pub(super) fn search<L: Lanes>(
             }
             let place = Balls::<L::Scalar>::take_place(l, &mut places);
             let objects = l.lookup_int(&balls.objects, place);
-            let asked = Asked::new(l, objects, false, leaving, asked);
+            let asked = Asked::new(l, objects, ShapeKind::Sphere, leaving, asked);
             let found = candidate(l, &balls.span_of(l, place, ray), &asked);
             search.take(l, &found, l.lookup_int(parts, place));
         }
@@ -110,7 +111,7 @@ pub(super) fn blocks<L: Lanes>(
             }
             let place = Balls::<L::Scalar>::take_place(l, &mut places);
             let objects = l.lookup_int(&balls.objects, place);
-            let asked = Asked::new(l, objects, false, leaving, asked);
+            let asked = Asked::new(l, objects, ShapeKind::Sphere, leaving, asked);
             let found = candidate(l, &balls.span_of(l, place, &shadow.ray), &asked);
             blocks.take(&found, shadow.limit);
         }

@@ -9,6 +9,7 @@ use super::model::{Many, Model};
 use super::pool::{WIDEST, array, each, int_array};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
 use crate::math::vec3::Vec3;
+use crate::shape::ShapeKind;
 use crate::shape::hierarchy::{BoxRay, Child, Descent, WIDTH};
 use crate::shape::implicit::placed::ImplicitTally;
 use crate::shape::lanes::balls::Balls;
@@ -99,7 +100,13 @@ impl<N: Lanes> Lone<N> {
         limit: N::Scalar,
     ) -> Option<(Candidate<N>, N::Mask, N::Int)> {
         let objects = n.load_int(&balls.objects[from..]);
-        let asked = Asked::new(n, objects, false, &self.leaving, balls.present(n, from));
+        let asked = Asked::new(
+            n,
+            objects,
+            ShapeKind::Sphere,
+            &self.leaving,
+            balls.present(n, from),
+        );
         let span = balls.span(n, from, &self.ray, asked.all, n.splat(limit));
         if !asked.met(&span).any() {
             return None;
@@ -121,8 +128,7 @@ impl<N: Lanes> Lone<N> {
             || {
                 let shape = &model.shapes[k as usize];
                 let kind = shape.kind?;
-                let flat = kind.is_flat();
-                let asked = Asked::new(n, n.int(k), flat, &self.leaving, n.mask(true));
+                let asked = Asked::new(n, n.int(k), kind, &self.leaving, n.mask(true));
                 let span = shape.span(n, &self.ray, asked.all, n.splat(limit));
                 if !asked.met(&span).any() {
                     return None;

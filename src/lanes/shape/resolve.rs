@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::list::{Query, nearest_of, occluded_by};
-use super::{Hit, Placed, Ray, ShapeKind, Start, Tally};
+use super::{Hit, Placed, Ray, Start, Tally};
 
 /// The certified shapes of a scene, by their index among all objects.
 #[derive(Debug, Clone, Default)]
@@ -97,11 +97,7 @@ impl Resolver {
 
     /// Which part of a shape a point in canonical coordinates is on.
     fn part(&self, index: usize, local: DVec3) -> u32 {
-        if self.placed[index].kind() == ShapeKind::Cube {
-            local.abs().max_position() as u32
-        } else {
-            0
-        }
+        self.placed[index].kind().part(local)
     }
 
     /// The closed shape that a ray goes into from its own wall.
@@ -163,8 +159,10 @@ impl Resolver {
             Start::Free
         } else if departure.inward {
             Start::OnSurfaceInward
-        } else {
+        } else if self.placed[index].kind().is_convex() {
             Start::Excluded
+        } else {
+            Start::Free
         }
     }
 }

@@ -27,24 +27,13 @@ pub fn precision(subject: Subject, problem: &Problem) -> Precision {
     for (object, body) in scene.objects.iter_mut().zip(&problem.bodies) {
         object.value.to_world = body.to_world;
         object.value.shape = match (subject, &body.implicit) {
-            (Subject::Canonical(kind), _) => shape(kind),
+            (Subject::Canonical(kind), _) => Shape::Canonical(kind),
             (_, Some(implicit)) => Shape::Implicit(implicit.clone()),
-            (_, None) => Shape::Sphere,
+            (_, None) => Shape::Canonical(ShapeKind::Sphere),
         };
     }
     match choose(&scene, false).map(|choices| choices.precision) {
         Ok(choose::Precision::Single) => Precision::Single,
         _ => Precision::Double,
-    }
-}
-
-fn shape(kind: ShapeKind) -> Shape {
-    match kind {
-        ShapeKind::Sphere => Shape::Sphere,
-        ShapeKind::Cube => Shape::Cube,
-        ShapeKind::Cylinder => Shape::Cylinder,
-        ShapeKind::Disk => Shape::Disk,
-        ShapeKind::Rectangle => Shape::Rectangle,
-        ShapeKind::Plane => Shape::Plane,
     }
 }

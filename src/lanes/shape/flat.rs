@@ -1,8 +1,41 @@
-//! Rectangle, disk and plane in lanes: z = 0 and a test of where.
+//! Pieces of the plane z = 0: how a line crosses it, and a test of where; exactly and in lanes.
 
-use super::{Enclosure, LaneRay, LaneShape, Span};
+use std::cmp::Ordering;
+
+use super::kind::Question;
+use super::lanes::{self, Enclosure};
+use super::line::{Crossing, Feature, LocalRay, Span};
 use crate::math::affine::Affine;
 use crate::math::lanes::{Lanes, Real, Scalar, inlined};
+use crate::math::number::Number;
+use crate::math::vec3::Vec3;
+
+/// Canonical places of the one face.
+pub const FACES: &[(usize, &[f64])] = &[(2, &[0.0])];
+
+/// The one crossing with z = 0. A line in the plane sees it from its edge, where it has no extent:
+/// that touch is a miss.
+pub fn crossing<N: Number>(ray: &LocalRay<N>) -> Option<Option<Crossing>> {
+    let slope = ray.direction[2].sign()?;
+    Some((slope != Ordering::Equal).then_some(Crossing {
+        feature: Feature::Flat,
+        leaving: slope == Ordering::Greater,
+    }))
+}
+
+/// The span of a flat shape with this outline test: its one crossing twice.
+pub fn flat_span<N: Number>(
+    ray: &LocalRay<N>,
+    inside: impl FnOnce(&Crossing) -> Option<bool>,
+) -> Option<Option<Span>> {
+    let Some(crossing) = crossing(ray)? else {
+        return Some(None);
+    };
+    Some(inside(&crossing)?.then_some(Span {
+        near: crossing,
+        far: crossing,
+    }))
+}
 
 /// The part of z = 0 that a flat shape covers.
 pub trait Outline {
@@ -15,62 +48,6 @@ pub trait Outline {
         z: L::Real,
         margin: L::Real,
     ) -> (L::Mask, L::Mask);
-}
-
-/// |x| ≤ 1, |y| ≤ 1.
-pub struct Rectangle;
-
-impl Outline for Rectangle {
-    #[inline(always)]
-    fn contains<L: Lanes>(
-        _l: L,
-        x: L::Real,
-        y: L::Real,
-        z: L::Real,
-        margin: L::Real,
-    ) -> (L::Mask, L::Mask) {
-        let depth = z - x.abs().max(y.abs());
-        (depth.gt(margin), depth.lt(-margin))
-    }
-}
-
-/// x² + y² ≤ 1.
-pub struct Disk;
-
-impl Outline for Disk {
-    /// The distance of (x, y) from its exact place is at most √2 of the margin, and 1½ pays for
-    /// the arithmetic of the squares as well.
-    #[inline(always)]
-    fn contains<L: Lanes>(
-        l: L,
-        x: L::Real,
-        y: L::Real,
-        z: L::Real,
-        margin: L::Real,
-    ) -> (L::Mask, L::Mask) {
-        let u = <L::Scalar as Scalar>::ROUNDOFF;
-        let squared = x.mul_add(x, y * y);
-        let margin = z.mul_add(l.real(4.0 * u), margin * l.real(1.5));
-        let (low, high) = (z - margin, z + margin);
-        let inside = low.gt(l.real(0.0)) & squared.lt(low * low);
-        (inside, squared.gt(high * high))
-    }
-}
-
-/// Everything.
-pub struct Plane;
-
-impl Outline for Plane {
-    #[inline(always)]
-    fn contains<L: Lanes>(
-        l: L,
-        _x: L::Real,
-        _y: L::Real,
-        z: L::Real,
-        margin: L::Real,
-    ) -> (L::Mask, L::Mask) {
-        (z.gt(margin), l.mask(false))
-    }
 }
 
 /// The constant and the factor of max|o| in the margin of the test of where.
@@ -100,7 +77,8 @@ pub fn margins<T: Scalar>(inverse: &Affine) -> [f64; 2] {
 /// t = −o_z/d_z within 2 (E_z + |t| D_z)/|d_z| + 5u|t| (first order, doubled for the rest while
 /// D_z ≤ |d_z|/4, which [`margins`] sees to; 5u pay for the arithmetic up to the rounded ends).
 #[inline(always)]
-pub fn span<L: Lanes, O: Outline>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> Span<L> {
+pub fn lane_span<L: Lanes, O: Outline>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
+    let Question { shape, ray, .. } = *question;
     let u = <L::Scalar as Scalar>::ROUNDOFF;
     let row = inlined(
         #[inline(always)]
@@ -120,11 +98,17 @@ pub fn span<L: Lanes, O: Outline>(l: L, shape: &LaneShape<L::Scalar>, ray: &Lane
     let e = distance.mul_add(z_error, shape.origin_error(l, ray, 2)) * l.real(2.0);
     let error = e.mul_add(reciprocal.abs(), distance * l.real(5.0 * u));
     let at = Enclosure::about(t, error);
-    Span {
+    lanes::Span {
         near: at,
         far: at,
         hit: inside,
         miss: outside,
         parts: [l.int(0); 2],
     }
+}
+
+/// A point of the plane, its height made exact.
+#[inline(always)]
+pub fn snapped<L: Lanes>(l: L, local: Vec3<L::Real>) -> Vec3<L::Real> {
+    Vec3::new(local.x, local.y, l.real(0.0))
 }
