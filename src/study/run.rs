@@ -17,7 +17,6 @@ use super::subject::{Ready, Subject};
 use super::work::{Timed, Work};
 use crate::film::{provenance, whole};
 use crate::render::memory;
-use crate::scene::SamplerKind;
 
 /// What is asked for.
 #[derive(Debug, Clone)]
@@ -143,7 +142,7 @@ pub fn run(request: &Request, watch: &mut dyn Watch) -> Result<Study, StudyError
 /// The axes asked for; the samplers where none is.
 fn axes(request: &Request, base: &Ready) -> Result<Vec<Axis>, StudyError> {
     let mut axes = request.axes.clone();
-    let centre = base.scene.image.sampler == SamplerKind::Center;
+    let centre = base.scene.image.sampler.is_centred();
     if axes.is_empty() && !centre {
         axes.push(Axis {
             key: Key::Sampler,

@@ -99,7 +99,7 @@ impl<T: Scalar> LaneImplicit<T> {
     ///
     /// The ray is clipped to the surface's own box and the hit compared with the limit afterwards, so
     /// that a hit does not depend, in its last digits, on what else was asked before.
-    #[inline(always)]
+    #[inline(never)]
     pub fn first_hit<L: Lanes<Scalar = T>>(
         &self,
         l: L,
@@ -109,24 +109,29 @@ impl<T: Scalar> LaneImplicit<T> {
         active: L::Mask,
         tally: &mut ImplicitTally,
     ) -> (L::Real, L::Mask) {
-        let inverse = ray.direction.reciprocal(l);
-        let active = active & self.bounds.meets(l, ray.origin, inverse, limit);
-        if !active.any() {
-            return (limit, active);
-        }
-        let (t, found) = match &self.finder {
-            Finder::SignChange => {
-                tally.uncertified += u64::from(active.bits().count_ones());
-                self.first_change(l, ray, start, active)
-            }
-            finder => {
-                let rays = PacketRays::new(l, ray);
-                let bits = [active.bits(), start.on.bits()];
-                let (t, found) = rays.ask(finder, self.level, bits, L::COUNT, tally);
-                (l.load(&t), l.mask_from_bits(found))
-            }
-        };
-        (t, found & t.lt(limit))
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let inverse = ray.direction.reciprocal(l);
+                let active = active & self.bounds.meets(l, ray.origin, inverse, limit);
+                if !active.any() {
+                    return (limit, active);
+                }
+                let (t, found) = match &self.finder {
+                    Finder::SignChange => {
+                        tally.uncertified += u64::from(active.bits().count_ones());
+                        self.first_change(l, ray, start, active)
+                    }
+                    finder => {
+                        let rays = PacketRays::new(l, ray);
+                        let bits = [active.bits(), start.on.bits()];
+                        let (t, found) = rays.ask(finder, self.level, bits, L::COUNT, tally);
+                        (l.load(&t), l.mask_from_bits(found))
+                    }
+                };
+                (t, found & t.lt(limit))
+            },
+        )
     }
 
     /// Outward normals at object points that are met in these directions: the gradient, of any
