@@ -124,8 +124,6 @@ fn a_study_writes_rows_charts_and_a_report() {
     }
     for name in ["error", "speed", "honesty"] {
         assert!(studio.text(&format!("out/{name}.svg")).starts_with("<svg"));
-        let png = std::fs::read(studio.path().join(format!("out/{name}.png"))).unwrap();
-        assert_eq!(&png[1..4], b"PNG");
     }
     let page = studio.text("out/report.html");
     for part in [

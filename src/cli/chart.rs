@@ -37,11 +37,10 @@ pub fn run(arguments: &args::Chart) -> Result<Answer, CommandError> {
     let svg = figure
         .svg()
         .map_err(|e| CommandError::Study(e.to_string()))?;
-    let paths = write_chart(&arguments.output, &svg)?;
+    let path = write_chart(&arguments.output, &svg)?;
     let mut lines = vec![format!(
-        "{}, {}: {} curves of {} renders",
-        paths[0].display(),
-        paths[1].display(),
+        "{}: {} curves of {} renders",
+        path.display(),
         curves.len(),
         rows.len()
     )];

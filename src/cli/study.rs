@@ -11,7 +11,7 @@ use etalon::study::own::MARGIN;
 use etalon::study::run::{Request, Study, run as run_study};
 use etalon::study::subject::Subject;
 use etalon::study::summary::{self, Curve, curves};
-use etalon::study::{StudyError, choice, raster, report};
+use etalon::study::{StudyError, choice, report};
 
 use super::args;
 use super::error::CommandError;
@@ -104,23 +104,15 @@ fn publish(request: &Request, study: &Study) -> Result<(), CommandError> {
     write(&request.directory.join("report.html"), page.as_bytes())
 }
 
-/// Writes a chart as NAME.svg and NAME.png, whose paths it returns; an ending of NAME that is one of
-/// these is dropped, any other dot belongs to the name.
-pub fn write_chart(base: &Path, svg: &str) -> Result<[PathBuf; 2], CommandError> {
-    let picture = raster::png(svg).map_err(|error| CommandError::Study(error.to_string()))?;
-    let ending = base.extension().and_then(|ending| ending.to_str());
-    let bare = match ending {
-        Some("svg" | "png") => base.with_extension(""),
-        _ => base.to_owned(),
-    };
-    let paths = [".svg", ".png"].map(|ending| {
-        let mut name = bare.clone().into_os_string();
-        name.push(ending);
-        PathBuf::from(name)
-    });
-    write(&paths[0], svg.as_bytes())?;
-    write(&paths[1], &picture)?;
-    Ok(paths)
+/// Writes a chart as NAME.svg and returns that path; NAME may have the ending already, any other dot
+/// belongs to the name.
+pub fn write_chart(base: &Path, svg: &str) -> Result<PathBuf, CommandError> {
+    let mut path = base.to_owned();
+    if base.extension().is_none_or(|ending| ending != "svg") {
+        path.as_mut_os_string().push(".svg");
+    }
+    write(&path, svg.as_bytes())?;
+    Ok(path)
 }
 
 /// Writes a file, whole or not at all.

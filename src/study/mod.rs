@@ -19,7 +19,6 @@ pub mod grid;
 pub mod journal;
 pub mod measure;
 pub mod own;
-pub mod raster;
 pub mod record;
 pub mod reference;
 pub mod report;
