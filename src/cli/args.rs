@@ -4,9 +4,9 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use etalon::chart::figures::USUAL_ERROR;
 use etalon::scene::Overrides;
 use etalon::study::axis::Axis;
-use etalon::study::charts::USUAL_ERROR;
 use etalon::study::choice::Choice;
 
 use super::values::{

@@ -4,13 +4,10 @@ mod watch;
 
 use std::path::{Path, PathBuf};
 
-use etalon::study::axis::Key;
-use etalon::study::charts;
-use etalon::study::figure::Figure;
+use etalon::chart::{self, Curve, Figure, Key, curves, figures};
 use etalon::study::own::MARGIN;
 use etalon::study::run::{Request, Study, run as run_study};
 use etalon::study::subject::Subject;
-use etalon::study::summary::{self, Curve, curves};
 use etalon::study::{StudyError, choice, report};
 
 use super::args;
@@ -85,12 +82,12 @@ fn publish(request: &Request, study: &Study) -> Result<(), CommandError> {
         return Ok(());
     }
     let figures = [
-        ("error", charts::error_over_abscissa(&curves, abscissa)),
+        ("error", figures::error_over_abscissa(&curves, abscissa)),
         (
             "speed",
-            charts::error_over_seconds(&curves, charts::USUAL_ERROR),
+            figures::error_over_seconds(&curves, figures::USUAL_ERROR),
         ),
-        ("honesty", charts::estimated_over_actual(&curves, abscissa)),
+        ("honesty", figures::estimated_over_actual(&curves, abscissa)),
     ];
     let mut drawn = Vec::new();
     for (name, figure) in &figures {
@@ -153,7 +150,7 @@ fn known(study: &Study, curves: &[Curve]) -> String {
     if own == 0.0 {
         return String::new();
     }
-    let times = summary::best(curves) / own;
+    let times = chart::best(curves) / own;
     let enough = if times < MARGIN {
         "; points near it are known the worse, and marked where it is the larger part"
     } else {
