@@ -1,6 +1,8 @@
 //! etalon: a physically based spectral renderer, and the instrument that proves its pictures
 //! right.
 
+pub mod chart;
+pub mod compare;
 pub mod film;
 pub mod plan;
 pub mod render;

@@ -4,9 +4,9 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use etalon::chart::figures::USUAL_ERROR;
 use etalon::scene::Overrides;
 use etalon::study::axis::Axis;
-use etalon::study::charts::USUAL_ERROR;
 use etalon::study::choice::Choice;
 
 use super::values::{
@@ -380,7 +380,7 @@ pub struct Finders {
 #[command(after_help = "\
 Each point of the grid is rendered --replicates times with independent seeds and compared with the \
 reference. The directory then holds study.csv with one row a render (its columns are explained in \
-scenes/README.md), the charts error, speed and honesty as SVG and PNG, and report.html, which needs \
+scenes/README.md), the charts error, speed and honesty as SVG, and report.html, which needs \
 no other file. The same command goes on with a study that was interrupted.
 
 Axes: spp, max_depth, wavelengths, scrambles (numbers: lists such as 4,8 and ranges such as \
@@ -440,7 +440,7 @@ pub struct Chart {
     /// Tables of studies.
     #[arg(value_name = "FILE.csv", required = true)]
     pub tables: Vec<PathBuf>,
-    /// The chart to write, as SVG and PNG.
+    /// The chart to write, as SVG.
     #[arg(short, long, value_name = "OUT", default_value = "chart")]
     pub output: PathBuf,
     /// The relative mean squared error at which the programs' times are compared.

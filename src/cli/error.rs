@@ -3,12 +3,12 @@
 use std::io;
 use std::path::PathBuf;
 
+use etalon::compare::CompareError;
 use etalon::film;
 use etalon::plan::PlanError;
 use etalon::render::bins::BinError;
 use etalon::render::target::Singular;
 use etalon::scene::SceneError;
-use etalon::study::compare::CompareError;
 use etalon::study::finders::OracleError;
 
 use super::trace::RayError;

@@ -2,13 +2,14 @@
 
 use std::time::{Duration, Instant};
 
-use super::axis::{Axis, Key};
+use super::axis::Axis;
 use super::grid::{Grid, Point};
 use super::measure::measure;
 use super::own::FIRST;
 use super::reference::Reference;
 use super::seeds::seed;
 use super::subject::Ready;
+use crate::chart::Key;
 use crate::film::pixels::{Estimate, Pixels};
 use crate::render::Unwatched;
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use super::StudyError;
-use super::axis::{Axis, Key};
+use super::axis::Axis;
 use super::budget;
 use super::choice::{self, Choice, Found};
 use super::clock::Clock;
@@ -12,9 +12,10 @@ use super::grid::Grid;
 use super::journal::Journal;
 use super::record::Record;
 use super::reference::Reference;
-use super::row::Row;
 use super::subject::{Ready, Subject};
 use super::work::{Timed, Work};
+use crate::chart::Key;
+use crate::chart::Row;
 use crate::film::{provenance, whole};
 use crate::render::memory;
 

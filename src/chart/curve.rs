@@ -1,7 +1,6 @@
 //! Rows of tables gathered into curves: what a chart shows.
 
-use super::axis::Key;
-use super::row::Row;
+use super::{Key, Row};
 use crate::stats::metrics::mean;
 use crate::stats::slope::{Replicates, Slope};
 use crate::stats::student;

@@ -2,8 +2,8 @@
 //! nearly normal.
 
 use super::{Channel, mean_over};
-use crate::render::blocks::{EDGE, members};
 use crate::stats::Estimate;
+use crate::stats::blocks::{EDGE, members};
 
 /// Most blocks along an edge of the picture: more would share the level among so many that each
 /// sees less.

@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-use super::axis::Key;
+use super::Key;
 
 /// The columns in the order in which they are written.
 pub const COLUMNS: [&str; 24] = [

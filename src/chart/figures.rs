@@ -1,9 +1,6 @@
 //! The charts of studies: error over the abscissa, error over seconds, estimated over actual error.
 
-use super::axis::Key;
-use super::figure::{Figure, Guide, MARKERS, Mark, Series};
-use super::row::Row;
-use super::summary::{Curve, Point, front};
+use super::{Curve, Figure, Guide, Key, MARKERS, Mark, Point, Row, Series, front};
 
 /// Colours that those who confuse red and green tell apart (M. Okabe and K. Ito, "Color Universal
 /// Design", 2008), without the yellow that is too light for lines.
