@@ -11,8 +11,6 @@ pub mod budget;
 pub mod choice;
 pub mod clock;
 pub mod coverage;
-pub mod failures;
-pub mod finders;
 pub mod grid;
 pub mod journal;
 pub mod measure;

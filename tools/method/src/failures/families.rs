@@ -7,13 +7,13 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use super::Subject;
-use crate::field::evaluate::Field;
-use crate::field::expression::{Expression, parse};
-use crate::field::named;
-use crate::math::affine::Affine;
-use crate::scene::{FinderChoice, Implicit};
-use crate::shape::implicit::certified::Certified;
-use crate::shape::{Ray, ShapeKind};
+use etalon::field::evaluate::Field;
+use etalon::field::expression::{Expression, parse};
+use etalon::field::named;
+use etalon::math::affine::Affine;
+use etalon::scene::{FinderChoice, Implicit};
+use etalon::shape::implicit::certified::Certified;
+use etalon::shape::{Ray, ShapeKind};
 
 /// What makes rays hard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

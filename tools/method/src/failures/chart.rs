@@ -8,9 +8,9 @@ use plotters::prelude::*;
 
 use super::families::{FAMILIES, Family};
 use super::{Method, Point, SUBJECTS, Subject};
-use crate::scene::FinderChoice;
-use crate::study::finders::Precision;
-use crate::study::finders::chart::{ChartError, failed};
+use crate::finders::Precision;
+use crate::finders::chart::{ChartError, failed};
+use etalon::scene::FinderChoice;
 
 /// One row a point.
 pub fn csv(points: &[Point]) -> String {

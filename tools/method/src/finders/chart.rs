@@ -41,7 +41,7 @@ pub fn csv(results: &[Result]) -> String {
 pub struct ChartError(String);
 
 /// Any error of the drawing crate.
-pub(in crate::study) fn failed(error: impl ToString) -> ChartError {
+pub(crate) fn failed(error: impl ToString) -> ChartError {
     ChartError(error.to_string())
 }
 

@@ -21,13 +21,13 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use super::finders::{Contestant, Precision, Ready, Score};
-use crate::math::affine::Affine;
-use crate::math::lanes::Scalar;
-use crate::scene::FinderChoice;
-use crate::shape::implicit::certified::Workspace;
-use crate::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
-use crate::shape::{Placed, Query, Ray, ShapeKind, Start, Tally};
+use crate::finders::{Contestant, Precision, Ready, Score};
+use etalon::math::affine::Affine;
+use etalon::math::lanes::Scalar;
+use etalon::scene::FinderChoice;
+use etalon::shape::implicit::certified::Workspace;
+use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
+use etalon::shape::{Placed, Query, Ray, ShapeKind, Start, Tally};
 use families::{Body, Case, FAMILIES, Family, Problem};
 use textbook::Textbook;
 use truth::First;
@@ -401,9 +401,9 @@ impl Asked {
                     Precision::Double => moved::<f64>(inverse, ray),
                 };
                 match ready.first_hit(&local, 0.0, &mut Workspace::default()) {
-                    super::finders::Answer::Hit(t) => Said::Hit { t, body: 0 },
-                    super::finders::Answer::Miss => Said::Miss,
-                    super::finders::Answer::Undecided => Said::Undecided,
+                    crate::finders::Answer::Hit(t) => Said::Hit { t, body: 0 },
+                    crate::finders::Answer::Miss => Said::Miss,
+                    crate::finders::Answer::Undecided => Said::Undecided,
                 }
             }
             Self::Proved(placed, workspace) => {

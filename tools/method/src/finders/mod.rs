@@ -8,11 +8,11 @@ mod oracle;
 
 use std::time::Instant;
 
-use crate::math::affine::Affine;
-use crate::scene::{FinderChoice, Implicit};
-use crate::shape::implicit::certified::Workspace;
-use crate::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
-use crate::shape::{Query, Ray};
+use etalon::math::affine::Affine;
+use etalon::scene::{FinderChoice, Implicit};
+use etalon::shape::implicit::certified::Workspace;
+use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
+use etalon::shape::{Query, Ray};
 
 use march::March;
 pub use oracle::{Oracle, OracleError, OracleRay, OracleShape};

@@ -1,9 +1,9 @@
 //! What the plan takes stands on the safe side of every failure map.
 
-use etalon::study::failures::chart::{csv, svg};
-use etalon::study::failures::families::FAMILIES;
-use etalon::study::failures::{Method, Point, SUBJECTS, points};
-use etalon::study::finders::Precision;
+use etalon_method::failures::chart::{csv, svg};
+use etalon_method::failures::families::FAMILIES;
+use etalon_method::failures::{Method, Point, SUBJECTS, points};
+use etalon_method::finders::Precision;
 use rayon::prelude::*;
 
 /// Rays a point: with a share of one in ten wrong, one point alone would show it with 9 in 10.

@@ -1,20 +1,20 @@
-//! `etalon finders`: the root finders of implicit surfaces, compared.
+//! `etalon-method finders`: the root finders of implicit surfaces, compared.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use etalon::study::failures;
-use etalon::study::finders::chart::{csv, svg};
-use etalon::study::finders::map::map;
-use etalon::study::finders::{CONTESTANTS, Contestant, Oracle, Result as Outcome, run as run_one};
+use etalon_method::failures;
+use etalon_method::finders::chart::{csv, svg};
+use etalon_method::finders::map::map;
+use etalon_method::finders::{CONTESTANTS, Contestant, Oracle, Result as Outcome, run as run_one};
 
 use super::args::Finders;
 use super::error::CommandError;
-use super::{Answer, tell};
+use super::tell;
 
-/// Charts all finders, or maps one surface.
-pub fn run(arguments: &Finders) -> Result<Answer, CommandError> {
+/// Charts all finders, or maps one surface; whether those that prove their answers were right.
+pub fn run(arguments: &Finders) -> Result<bool, CommandError> {
     if arguments.failures {
         return failures(arguments);
     }
@@ -28,7 +28,7 @@ pub fn run(arguments: &Finders) -> Result<Answer, CommandError> {
 }
 
 /// Maps where each method fails.
-fn failures(arguments: &Finders) -> Result<Answer, CommandError> {
+fn failures(arguments: &Finders) -> Result<bool, CommandError> {
     let points = failures::run(arguments.count as usize, |subject, family| {
         if !arguments.quiet {
             tell(&format!("running {}, {}", subject.name(), family.name()));
@@ -43,11 +43,10 @@ fn failures(arguments: &Finders) -> Result<Answer, CommandError> {
     })?;
     write(&picture, drawn.as_bytes())?;
     say(&failures::summary(&points))?;
-    let safe = points.iter().all(failures::Point::is_safe);
-    Ok(if safe { Answer::Good } else { Answer::No })
+    Ok(points.iter().all(failures::Point::is_safe))
 }
 
-fn chart(arguments: &Finders, oracle: &Oracle) -> Result<Answer, CommandError> {
+fn chart(arguments: &Finders, oracle: &Oracle) -> Result<bool, CommandError> {
     let mut results = Vec::new();
     for contestant in CONTESTANTS {
         if !arguments.quiet {
@@ -64,13 +63,12 @@ fn chart(arguments: &Finders, oracle: &Oracle) -> Result<Answer, CommandError> {
     })?;
     write(&picture, drawn.as_bytes())?;
     say(&summary(&results))?;
-    let sound = results.iter().all(|result| {
+    Ok(results.iter().all(|result| {
         !matches!(result.contestant, Contestant::Proved(_)) || result.all().wrong == 0
-    });
-    Ok(if sound { Answer::Good } else { Answer::No })
+    }))
 }
 
-fn paint(arguments: &Finders, oracle: &Oracle, name: &str) -> Result<Answer, CommandError> {
+fn paint(arguments: &Finders, oracle: &Oracle, name: &str) -> Result<bool, CommandError> {
     let unknown = || CommandError::Surface {
         name: name.to_owned(),
         known: oracle
@@ -109,10 +107,9 @@ fn paint(arguments: &Finders, oracle: &Oracle, name: &str) -> Result<Answer, Com
         );
     }
     say(&text)?;
-    let sound = counts
+    Ok(counts
         .iter()
-        .all(|count| !matches!(count.contestant, Contestant::Proved(_)) || count.wrong == 0);
-    Ok(if sound { Answer::Good } else { Answer::No })
+        .all(|count| !matches!(count.contestant, Contestant::Proved(_)) || count.wrong == 0))
 }
 
 fn described(contestant: Contestant) -> String {

@@ -3,9 +3,9 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::math::affine::Affine;
-use crate::math::lanes::Scalar;
-use crate::shape::{Ray, ShapeKind};
+use etalon::math::affine::Affine;
+use etalon::math::lanes::Scalar;
+use etalon::shape::{Ray, ShapeKind};
 
 /// A canonical shape, placed.
 #[derive(Debug, Clone)]

@@ -5,11 +5,11 @@ use std::cell::RefCell;
 use num_rational::BigRational;
 
 use super::Answer;
-use crate::field::evaluate::{binary, nearest, unary};
-use crate::field::tape::{Algebra, Binary, Tape, Unary};
-use crate::math::lanes::Scalar;
-use crate::root::sign_change::first_change;
-use crate::shape::Ray;
+use etalon::field::evaluate::{binary, nearest, unary};
+use etalon::field::tape::{Algebra, Binary, Tape, Unary};
+use etalon::math::lanes::Scalar;
+use etalon::root::sign_change::first_change;
+use etalon::shape::Ray;
 
 /// A surface to step along.
 pub struct March<T> {

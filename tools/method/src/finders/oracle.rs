@@ -6,12 +6,12 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::Answer;
-use crate::field::expression::{Expression, Parameter, parse, rational};
-use crate::shape::Ray;
+use etalon::field::expression::{Expression, Parameter, parse, rational};
+use etalon::shape::Ray;
 
 /// Rays and surfaces that come with the program.
-const RAYS: &str = include_str!("../../../tests/data/implicit.csv");
-const SHAPES: &str = include_str!("../../../tests/data/implicit_shapes.csv");
+const RAYS: &str = include_str!("../../../../tests/data/implicit.csv");
+const SHAPES: &str = include_str!("../../../../tests/data/implicit_shapes.csv");
 
 /// Why a set of rays cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

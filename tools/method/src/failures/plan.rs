@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::families::Problem;
 use super::{Precision, Subject};
-use crate::plan::choose::{self, choose};
-use crate::scene::{Overrides, Shape, parse};
-use crate::shape::ShapeKind;
+use etalon::plan::choose::{self, choose};
+use etalon::scene::{Overrides, Shape, parse};
+use etalon::shape::ShapeKind;
 
 /// Pixels along the picture's height, which the object about fills.
 const PIXELS: u32 = 256;

@@ -1,8 +1,8 @@
 //! Nanoseconds a ray of the finders of implicit surfaces.
 //!
-//!     cargo bench --bench implicit                     oracle rays, all finders
-//!     cargo bench --bench implicit -- view heart 700 10 depths.f64
-//!                                                      primary rays, camera 10 times as far
+//!     cargo bench -p etalon-method               oracle rays, all finders
+//!     cargo bench -p etalon-method -- view heart 700 10 "$PWD/depths.f64"
+//!                                                primary rays, camera 10 times as far
 //!
 //! Coefficients are formed anew for each ray. Each time is the best of several runs over all rays of
 //! a kind, one thread.
@@ -29,7 +29,7 @@ use etalon::shape::implicit::baseline::SteppingFinder;
 use etalon::shape::implicit::certified::{Certified, Packet, WIDTH, Wish, Workspace};
 use etalon::shape::lanes::LaneRay;
 use etalon::shape::lanes::implicit::{LaneImplicit, StartSign};
-use etalon::study::finders::{CLASSES, Oracle};
+use etalon_method::finders::{CLASSES, Oracle};
 use fearless_simd::Level;
 use glam::DVec3;
 use yardstick::Yardstick;

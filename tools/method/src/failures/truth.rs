@@ -7,11 +7,11 @@ use std::cmp::Ordering;
 
 use super::Subject;
 use super::families::{Body, Case};
-use crate::math::exact::Exact;
-use crate::math::number::{Number, dot, power_of_two};
-use crate::shape::ladder::{Ladder, ScaledRay};
-use crate::shape::line::LocalRay;
-use crate::shape::{Ray, ShapeKind};
+use etalon::math::exact::Exact;
+use etalon::math::number::{Number, dot, power_of_two};
+use etalon::shape::ladder::{Ladder, ScaledRay};
+use etalon::shape::line::LocalRay;
+use etalon::shape::{Ray, ShapeKind};
 
 /// The first hit of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]

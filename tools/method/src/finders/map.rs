@@ -4,9 +4,9 @@ use glam::DVec3;
 use image::{Rgb, RgbImage};
 
 use super::{Answer, CONTESTANTS, Contestant, OracleShape};
-use crate::scene::FinderChoice;
-use crate::shape::Ray;
-use crate::shape::implicit::certified::Workspace;
+use etalon::scene::FinderChoice;
+use etalon::shape::Ray;
+use etalon::shape::implicit::certified::Workspace;
 
 /// Right hit, right miss, wrong, undecided, and where the truth itself is not known.
 const RIGHT_HIT: Rgb<u8> = Rgb([150, 165, 180]);
