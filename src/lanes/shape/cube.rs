@@ -6,7 +6,7 @@ use super::kind::{Canonical, Emitter, Question};
 use super::lanes::part::{Part, PartKind};
 use super::lanes::{self, Enclosure, LaneRay, LaneShape};
 use super::line::{LocalRay, Span};
-use super::slab::{Along, LaneSlab, Slab, cut, lane_slab, reach, slab};
+use super::slab::{Along, Coordinate, LaneSlab, Slab, cut, lane_slab, reach, slab};
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
 use crate::math::number::Number;
 use crate::math::vec3::Vec3;
@@ -93,26 +93,28 @@ fn slabs<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> [Lan
     let axis = inlined(
         #[inline(always)]
         |i| {
-            let (o, d) = shape.inverse.row(l, i, ray.origin, ray.direction);
-            let (e, dd) = bounds(l, shape, ray, i);
-            lane_slab(l, o, d, e, dd)
+            let local = shape.inverse.row(l, i, ray.origin, ray.direction);
+            lane_slab(l, &coordinate(l, shape, ray, i, local))
         },
     );
     [axis(0), axis(1), axis(2)]
 }
 
-/// Bounds of the errors of local origin and direction.
+/// A local coordinate (origin, direction) with bounds of its errors.
 #[inline(always)]
-fn bounds<L: Lanes>(
+fn coordinate<L: Lanes>(
     l: L,
     shape: &LaneShape<L::Scalar>,
     ray: &LaneRay<L>,
     i: usize,
-) -> (L::Real, L::Real) {
-    (
-        shape.origin_error(l, ray, i),
-        l.splat(shape.direction_error[i]),
-    )
+    (origin, direction): (L::Real, L::Real),
+) -> Coordinate<L> {
+    Coordinate {
+        origin,
+        direction,
+        origin_error: shape.origin_error(l, ray, i),
+        direction_error: l.splat(shape.direction_error[i]),
+    }
 }
 
 /// The same where some line may run along a slab.
@@ -132,9 +134,9 @@ fn with_parallels<L: Lanes>(
             let reach = reach(l, shape, ray, o, d);
             let (mut lost, mut outside) = (l.mask(false), l.mask(false));
             let components = [(o.x, d.x), (o.y, d.y), (o.z, d.z)];
-            for (i, (slab, (o, d))) in slabs.iter_mut().zip(components).enumerate() {
-                let (e, dd) = bounds(l, shape, ray, i);
-                let along: Along<L> = slab.settle(l, o, d, e, dd, reach);
+            for (i, (slab, local)) in slabs.iter_mut().zip(components).enumerate() {
+                let coordinate = coordinate(l, shape, ray, i, local);
+                let along: Along<L> = slab.settle(l, &coordinate, reach);
                 lost = lost | along.lost;
                 outside = outside | along.outside;
             }

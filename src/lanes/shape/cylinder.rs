@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::kind::{Canonical, Emitter, Question};
 use super::lanes::{self, Enclosure, LaneShape, LaneSurface};
 use super::line::{Crossing, Fraction, LocalRay, Span};
-use super::slab::{Along, Slab, cut, lane_slab, reach, slab};
+use super::slab::{Along, Coordinate, Slab, cut, lane_slab, reach, slab};
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
 use crate::math::number::{Number, dot};
 use crate::math::vec3::Vec3;
@@ -109,18 +109,20 @@ impl Canonical for Cylinder {
             side_miss = (side_miss & !parallel) | (parallel & outside);
         }
 
-        let (e, dd) = (
-            shape.origin_error(l, ray, 2),
-            l.splat(shape.direction_error[2]),
-        );
-        let mut caps = lane_slab(l, o.z, d.z, e, dd);
+        let height = Coordinate {
+            origin: o.z,
+            direction: d.z,
+            origin_error: shape.origin_error(l, ray, 2),
+            direction_error: l.splat(shape.direction_error[2]),
+        };
+        let mut caps = lane_slab(l, &height);
         let nowhere = l.mask(false);
         let mut along = Along::<L> {
             lost: nowhere,
             outside: nowhere,
         };
         if (caps.parallel & asked).any() {
-            along = caps.settle(l, o.z, d.z, e, dd, reach(l, shape, ray, o, d));
+            along = caps.settle(l, &height, reach(l, shape, ray, o, d));
         }
         let near = Enclosure {
             low: side_near.low.max(caps.near.low),

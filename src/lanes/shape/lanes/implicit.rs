@@ -60,6 +60,19 @@ pub struct StartSign<L: Lanes> {
     pub inward: L::Mask,
 }
 
+/// Rays that an implicit surface is asked about.
+#[derive(Clone, Copy)]
+pub struct FieldQuestion<'a, L: Lanes> {
+    /// The rays.
+    pub ray: &'a LaneRay<L>,
+    /// What they know of the surface at their start.
+    pub start: StartSign<L>,
+    /// Hits count before this.
+    pub limit: L::Real,
+    /// The rays whose answers count.
+    pub active: L::Mask,
+}
+
 impl<T: Scalar> LaneImplicit<T> {
     /// Rounds a placement: clip box in object coordinates, world → object map.
     ///
@@ -103,15 +116,18 @@ impl<T: Scalar> LaneImplicit<T> {
     pub fn first_hit<L: Lanes<Scalar = T>>(
         &self,
         l: L,
-        ray: &LaneRay<L>,
-        start: StartSign<L>,
-        limit: L::Real,
-        active: L::Mask,
+        question: &FieldQuestion<'_, L>,
         tally: &mut ImplicitTally,
     ) -> (L::Real, L::Mask) {
         l.vectorize(
             #[inline(always)]
             || {
+                let FieldQuestion {
+                    ray,
+                    start,
+                    limit,
+                    active,
+                } = *question;
                 let inverse = ray.direction.reciprocal(l);
                 let active = active & self.bounds.meets(l, ray.origin, inverse, limit);
                 if !active.any() {
