@@ -6,8 +6,6 @@
 //! small as well as differences everywhere. Standard errors of both sides add up in squares, with
 //! Welch's degrees of freedom.
 
-use serde::Serialize;
-
 use super::measure::shared;
 use super::{Block, Channel, LEAST_FREEDOM, Side, blocks, mean_over};
 use crate::stats::family::sidak;
@@ -25,7 +23,8 @@ pub const ROUNDING: f64 = 48.0 / 16_777_216.0;
 const KINDS: f64 = 3.0;
 
 /// What the tests say.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Judgement {
     /// Whether no test rejects.
     pub consistent: bool,
@@ -36,7 +35,8 @@ pub struct Judgement {
 }
 
 /// What the tests say of a channel.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ChannelJudgement {
     /// Its name.
     pub channel: String,
@@ -58,7 +58,8 @@ pub struct ChannelJudgement {
 }
 
 /// What the tests say of a channel's blocks.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct BlockJudgement {
     /// Blocks with enough degrees of freedom.
     pub count: usize,

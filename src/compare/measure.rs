@@ -1,7 +1,5 @@
 //! The error metrics of one picture against another.
 
-use serde::Serialize;
-
 use super::{Channel, CompareError, Side};
 use crate::film::names;
 use crate::stats::metrics::{
@@ -9,7 +7,8 @@ use crate::stats::metrics::{
 };
 
 /// All metrics of a channel, or of several.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Metrics {
     /// Signed mean error, in the unit of the channel.
     pub mean_error: Metric,
@@ -26,7 +25,8 @@ pub struct Metrics {
 }
 
 /// The metrics of a channel.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ChannelMetrics {
     /// Its name.
     pub channel: String,
