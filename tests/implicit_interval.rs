@@ -71,7 +71,7 @@ fn undecided(rows: &[Row], method: Method, bound: u32) -> usize {
             let searching = Searching {
                 method,
                 bound,
-                leaving: None,
+                ..Searching::default()
             };
             (name, (EnclosedField::new(&shape.field.tape), searching))
         })
@@ -127,15 +127,17 @@ fn instruction_sets_agree() {
     ];
     for text in fields {
         let tape = parse(text, &[]).unwrap().tape;
-        let all: Vec<EnclosedField> = Instructions::all()
-            .into_iter()
-            .map(|i| EnclosedField::with_instructions(&tape, i))
-            .collect();
+        let field = EnclosedField::new(&tape);
+        let searching = |instructions| Searching {
+            instructions,
+            ..Searching::default()
+        };
+        let all: Vec<Searching> = Instructions::all().into_iter().map(searching).collect();
         let mut decided = 0;
         for row in rows().iter().step_by(40) {
             let hits: Vec<Outcome> = all
                 .iter()
-                .map(|field| first_hit(field, 2.0, row, &Searching::default()))
+                .map(|searching| first_hit(&field, 2.0, row, searching))
                 .collect();
             assert!(
                 hits.iter().all(|hit| *hit == hits[0]),

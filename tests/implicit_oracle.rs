@@ -12,11 +12,13 @@ use std::collections::{BTreeMap, HashMap};
 
 use etalon::field::normal::SHARP;
 use etalon::math::affine::Affine;
+use etalon::math::instructions::Instructions;
 use etalon::scene::{FinderChoice, Implicit};
-use etalon::shape::implicit::certified::{Certified, Packet, WIDTH, Wish, Workspace};
+use etalon::shape::implicit::certified::{
+    Answers, Certified, Packet, Tier, WIDTH, Wish, Workspace,
+};
 use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitHit, ImplicitTally, PlacedImplicit};
 use etalon::shape::{Query, Ray};
-use fearless_simd::Level;
 
 use crate::oracle_support::{IMPLICIT, OracleShape, Row, number, rows, shapes, vector};
 
@@ -112,10 +114,21 @@ fn normal_fault(row: &Row, hit: &ImplicitHit) -> Option<String> {
     (checked && off(row) > NORMAL).then(|| format!("normal off by {:e}", off(row)))
 }
 
-/// Faults and tally of all rays.
+/// Faults and tally of all rays, the same on every instruction set.
 fn trace(finder: FinderChoice) -> (Vec<String>, ImplicitTally) {
     let surfaces = placed(finder);
-    let (mut workspace, mut tally) = (Workspace::default(), ImplicitTally::default());
+    let all = Instructions::all().into_iter();
+    let mut each = all.map(|instructions| trace_on(instructions, &surfaces));
+    let first = each.next().unwrap();
+    assert!(each.all(|other| other == first));
+    first
+}
+
+fn trace_on(
+    instructions: Instructions,
+    surfaces: &BTreeMap<String, (PlacedImplicit, f64)>,
+) -> (Vec<String>, ImplicitTally) {
+    let (mut workspace, mut tally) = (Workspace::new(instructions), ImplicitTally::default());
     let mut faults = Vec::new();
     for row in &rows(IMPLICIT) {
         let (surface, half) = &surfaces[&row["shape"]];
@@ -199,7 +212,6 @@ fn second_hits_of_rays_that_leave() {
     let surfaces = surfaces();
     let placed = placed(FinderChoice::Auto);
     let mut faults = Vec::new();
-    let level = Level::new();
     let wish = Wish {
         sharp: false,
         exact: true,
@@ -224,7 +236,7 @@ fn second_hits_of_rays_that_leave() {
         packet.set(0, hit.point, direction, [0.0, f64::INFINITY]);
         packet.leaving = 1;
         let certified = &certified[&ray["shape"]];
-        let answers = certified.first_hits(level, &packet, wish, &mut workspace);
+        let answers = certified.first_hits(&packet, wish, &mut workspace);
         let right = if answers.found & 1 == 1 {
             row["hit2"] == "1" && (answers.t[0] - number(row, "t2")).abs() < 1e-5
         } else {
@@ -237,10 +249,23 @@ fn second_hits_of_rays_that_leave() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// Rays in a stream have the answers they have alone.
+/// What answers say of a ray: found, absent, where, how many times, by what.
+pub fn known(answers: &Answers, lane: usize) -> ([bool; 2], [u64; 3], u32, Tier) {
+    let bits = [answers.found, answers.absent].map(|set| set >> lane & 1 == 1);
+    let t = [answers.t, answers.low, answers.high].map(|t| t[lane].to_bits());
+    (
+        bits,
+        if bits[0] { t } else { [0; 3] },
+        answers.multiplicity[lane],
+        answers.tiers[lane],
+    )
+}
+
+/// Rays in a stream have the answers they have alone, on every instruction set.
 #[test]
 fn streams_agree_with_single_packets() {
-    let (level, mut workspace) = (Level::new(), Workspace::default());
+    let sets = Instructions::all().into_iter();
+    let mut workspaces: Vec<Workspace> = sets.map(Workspace::new).collect();
     let table = rows(IMPLICIT);
     for (name, surface) in &surfaces() {
         let Implicit { field, inside, .. } = &surface.implicit;
@@ -258,17 +283,14 @@ fn streams_agree_with_single_packets() {
         let packets: Vec<Packet> = rays.chunks(WIDTH).map(packet).collect();
         for sharp in [false, true] {
             let wish = Wish { sharp, exact: true };
-            let all = certified.first_hits_of_all(level, &packets, wish, &mut workspace);
+            let all = certified.first_hits_of_all(&packets, wish, &mut workspaces[0]);
             for (packet, stream) in packets.iter().zip(all) {
-                let alone = certified.first_hits(level, packet, wish, &mut workspace);
-                assert_eq!(
-                    (alone.found, alone.absent),
-                    (stream.found, stream.absent),
-                    "{name}"
-                );
-                for lane in (0..WIDTH).filter(|lane| alone.found >> lane & 1 == 1) {
-                    let same = alone.t[lane] == stream.t[lane];
-                    assert!(same && alone.tiers[lane] == stream.tiers[lane], "{name}");
+                for workspace in &mut workspaces {
+                    let alone = certified.first_hits(packet, wish, workspace);
+                    for lane in (0..WIDTH).filter(|lane| packet.active >> lane & 1 == 1) {
+                        let same = known(&alone, lane) == known(&stream, lane);
+                        assert!(same, "{name}, {}", workspace.instructions.name());
+                    }
                 }
             }
         }
@@ -279,7 +301,7 @@ fn streams_agree_with_single_packets() {
 #[test]
 fn bounds_of_zero_are_noticed() {
     let surfaces = surfaces();
-    let (level, mut workspace) = (Level::new(), Workspace::default());
+    let mut workspace = Workspace::default();
     let wish = Wish {
         sharp: false,
         exact: true,
@@ -299,7 +321,7 @@ fn bounds_of_zero_are_noticed() {
             let mut packet = Packet::default();
             packet.set(0, ray.origin, ray.direction, [t_min, t_max]);
             let finder = &finders[&row["shape"]];
-            let answers = finder.first_hits(level, &packet, wish, &mut workspace);
+            let answers = finder.first_hits(&packet, wish, &mut workspace);
             (answers.found & 1 == 1) != (row["hit"] == "1")
         })
         .count();

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use etalon::math::functions::{atan2_turns, ln, sin_cos_turns};
-use etalon::math::lanes::{Int, Lanes, Real};
+use etalon::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use etalon::math::vec3::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -246,78 +246,77 @@ fn frames_are_orthonormal_and_right_handed() {
     }
 }
 
-/// Integer and conversion operations on nasty words, as words and reals.
+/// Integer and conversion operations on nasty words: the words by operation, and the reals.
 struct Words;
 impl Job for Words {
-    type Output = (Vec<u32>, Vec<f64>);
+    type Output = ([Vec<u32>; 9], Vec<f64>);
     fn run<L: Lanes>(&self, l: L) -> Self::Output {
-        use etalon::math::lanes::{Mask, Scalar};
-        let (mut words, mut reals) = (Vec::new(), Vec::new());
+        let mut found = Self::Output::default();
         let mut rng = Pcg64Mcg::seed_from_u64(3);
-        let special = [0, 1, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff, 0x00ff_ffff];
         for round in 0..400 {
-            let a: [u32; 16] = std::array::from_fn(|i| {
-                if round == 0 {
-                    special[i % 6]
-                } else {
-                    rng.random()
-                }
-            });
-            let b: [u32; 16] = std::array::from_fn(|i| {
-                if round == 0 {
-                    special[i / 3]
-                } else {
-                    rng.random()
-                }
-            });
-            let (x, y) = (l.load_int(&a), l.load_int(&b));
-            let results = [
-                (x.plus(y), std::array::from_fn(|i| a[i].wrapping_add(b[i]))),
-                (x.minus(y), std::array::from_fn(|i| a[i].wrapping_sub(b[i]))),
-                (x.times(y), std::array::from_fn(|i| a[i].wrapping_mul(b[i]))),
-                (x.left(7), a.map(|a| a << 7)),
-                (x.right(9), a.map(|a| a >> 9)),
-                (x ^ y, std::array::from_fn(|i| a[i] ^ b[i])),
-                (x & y, std::array::from_fn(|i| a[i] & b[i])),
-                (x | y, std::array::from_fn(|i| a[i] | b[i])),
-                (x.reversed(), a.map(u32::reverse_bits)),
-            ];
-            for (k, (got, want)) in results.into_iter().enumerate() {
-                let mut stored = [0u32; 16];
-                l.store_int(got, &mut stored);
-                assert_eq!(stored[..L::COUNT], want[..L::COUNT], "operation {k}");
-                words.extend(&stored[..8]);
-            }
-            let below = x.below(y).bits();
-            let equal = x.same(x).bits();
-            for i in 0..L::COUNT {
-                assert_eq!(below >> i & 1 == 1, a[i] < b[i]);
-            }
-            assert_eq!(equal, ((1u64 << L::COUNT) - 1) as u32);
-            let uniform = l.uniform(x);
-            let small = x.right(8);
-            let real = l.to_real(small);
-            let back = l.truncate(real + l.real(0.0));
-            for (i, &a) in a.iter().enumerate().take(L::COUNT) {
-                let u = l.lane(uniform, i).to_f64();
-                assert!((0.0..1.0).contains(&u));
-                // Rounded down, by less than the last bit kept.
-                let exact = f64::from(a) / 4_294_967_296.0;
-                assert!(u <= exact && exact - u < libm::exp2(-f64::from(L::UNIFORM_BITS)));
-                assert_eq!(l.lane(real, i).to_f64(), f64::from(a >> 8));
-                assert_eq!(l.int_lane(back, i), a >> 8);
-                if i < 8 {
-                    reals.push(u);
-                }
+            let mut words = |special: fn(usize) -> usize| -> [u32; 16] {
+                let of = |i| {
+                    if round == 0 {
+                        SPECIAL[special(i)]
+                    } else {
+                        rng.random()
+                    }
+                };
+                std::array::from_fn(of)
+            };
+            let (a, b) = (words(|i| i % 6), words(|i| i / 3));
+            for at in (0..16).step_by(L::COUNT) {
+                operate(l, &a[at..], &b[at..], &mut found);
             }
         }
-        (words, reals)
+        found
+    }
+}
+
+const SPECIAL: [u32; 6] = [0, 1, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff, 0x00ff_ffff];
+
+fn operate<L: Lanes>(l: L, a: &[u32], b: &[u32], found: &mut ([Vec<u32>; 9], Vec<f64>)) {
+    let (x, y) = (l.load_int(a), l.load_int(b));
+    type Word = fn(u32, u32) -> u32;
+    let results: [(L::Int, Word); 9] = [
+        (x.plus(y), u32::wrapping_add),
+        (x.minus(y), u32::wrapping_sub),
+        (x.times(y), u32::wrapping_mul),
+        (x.left(7), |a, _| a << 7),
+        (x.right(9), |a, _| a >> 9),
+        (x ^ y, |a, b| a ^ b),
+        (x & y, |a, b| a & b),
+        (x | y, |a, b| a | b),
+        (x.reversed(), |a, _| a.reverse_bits()),
+    ];
+    for (k, (got, want)) in results.into_iter().enumerate() {
+        for i in 0..L::COUNT {
+            assert_eq!(l.int_lane(got, i), want(a[i], b[i]), "operation {k}");
+            found.0[k].push(l.int_lane(got, i));
+        }
+    }
+    let below = x.below(y).bits();
+    let equal = x.same(x).bits();
+    assert_eq!(equal, ((1u64 << L::COUNT) - 1) as u32);
+    let uniform = l.uniform(x);
+    let real = l.to_real(x.right(8));
+    let back = l.truncate(real + l.real(0.0));
+    for (i, &a) in a.iter().enumerate().take(L::COUNT) {
+        assert_eq!(below >> i & 1 == 1, a < b[i]);
+        let u = l.lane(uniform, i).to_f64();
+        assert!((0.0..1.0).contains(&u));
+        // Rounded down, by less than the last bit kept.
+        let exact = f64::from(a) / 4_294_967_296.0;
+        assert!(u <= exact && exact - u < libm::exp2(-f64::from(L::UNIFORM_BITS)));
+        assert_eq!(l.lane(real, i).to_f64(), f64::from(a >> 8));
+        assert_eq!(l.int_lane(back, i), a >> 8);
+        found.1.push(u);
     }
 }
 
 #[test]
 fn words_wrap_alike_in_every_kind_of_lane() {
-    let mut words: Vec<Vec<u32>> = Vec::new();
+    let mut words = Vec::new();
     for precision in PRECISIONS {
         let results = on_each(precision, &Words);
         for (name, result) in &results[1..] {

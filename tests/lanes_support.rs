@@ -1,36 +1,11 @@
 //! Running code over lanes: on the best instruction set, or on all of them with the bits compared.
 
-use etalon::math::lanes::{Double, Lanes, Scalar, Single};
-use fearless_simd::Level;
+use etalon::math::instructions::{self, Instructions};
+use etalon::math::lanes::{Lanes, Scalar};
 
-/// Which scalars.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Precision {
-    /// f32 × 16.
-    Single,
-    /// f64 × 8.
-    Double,
-}
+pub use etalon::math::instructions::Precision;
 
-pub const PRECISIONS: [Precision; 2] = [Precision::Single, Precision::Double];
-
-impl Precision {
-    /// Unit roundoff.
-    pub fn roundoff(self) -> f64 {
-        match self {
-            Self::Single => f32::ROUNDOFF,
-            Self::Double => f64::ROUNDOFF,
-        }
-    }
-
-    /// The nearest number of this precision.
-    pub fn rounded(self, x: f64) -> f64 {
-        match self {
-            Self::Single => f64::from(x as f32),
-            Self::Double => x,
-        }
-    }
-}
+pub const PRECISIONS: [Precision; 2] = Precision::ALL;
 
 /// Something to do in lanes of any kind.
 pub trait Job {
@@ -38,56 +13,26 @@ pub trait Job {
     fn run<L: Lanes>(&self, l: L) -> Self::Output;
 }
 
+/// A job of either precision as one of each.
+struct Either<'a, J>(&'a J);
+
+impl<T: Scalar, J: Job> instructions::Job<T> for Either<'_, J> {
+    type Output = J::Output;
+    fn run<L: Lanes<Scalar = T>>(self, l: L) -> J::Output {
+        self.0.run(l)
+    }
+}
+
 /// Runs a job on every instruction set of this machine, the best first, with their names.
 pub fn on_each<J: Job>(precision: Precision, job: &J) -> Vec<(&'static str, J::Output)> {
-    let level = Level::new();
-    let mut all = Vec::new();
-    macro_rules! on {
-        ($name:literal, $token:expr) => {
-            if let Some(simd) = $token {
-                all.push((
-                    $name,
-                    match precision {
-                        Precision::Single => job.run(Single(simd)),
-                        Precision::Double => job.run(Double(simd)),
-                    },
-                ));
-            }
-        };
-    }
-    #[cfg(target_arch = "x86_64")]
-    {
-        on!("avx512", level.as_avx512());
-        on!("avx2", level.as_avx2());
-        on!("sse2", level.as_sse2());
-    }
-    #[cfg(target_arch = "aarch64")]
-    on!("neon", level.as_neon());
-    all
+    let all = Instructions::all().into_iter();
+    all.map(|set| (set.name(), set.run_in(precision, Either(job))))
+        .collect()
 }
 
 /// Runs a job on the best instruction set only.
 pub fn best<J: Job>(precision: Precision, job: &J) -> J::Output {
-    let level = Level::new();
-    macro_rules! on {
-        ($token:expr) => {
-            if let Some(simd) = $token {
-                return match precision {
-                    Precision::Single => job.run(Single(simd)),
-                    Precision::Double => job.run(Double(simd)),
-                };
-            }
-        };
-    }
-    #[cfg(target_arch = "x86_64")]
-    {
-        on!(level.as_avx512());
-        on!(level.as_avx2());
-        on!(level.as_sse2());
-    }
-    #[cfg(target_arch = "aarch64")]
-    on!(level.as_neon());
-    panic!("no instruction set for lanes on this machine");
+    Instructions::best().run_in(precision, Either(job))
 }
 
 /// A function of lane reals, to be applied to columns of numbers.

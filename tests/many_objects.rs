@@ -172,10 +172,12 @@ fn rays(count: usize) -> Vec<[DVec3; 2]> {
 /// The answers for all rays, and then for as many that leave the objects hit, inward or outward.
 fn answers<L: Lanes>(l: L, model: &Model<L::Scalar>, rays: &[[DVec3; 2]]) -> Vec<Answer> {
     let mut answers = [Vec::new(), Vec::new()];
-    for packet in rays.chunks(L::COUNT) {
+    for (number, packet) in rays.chunks(L::COUNT).enumerate() {
         let mut leaving = [NOTHING; WIDEST];
         let mut rays = packet.to_vec();
-        for (answers, inward) in answers.iter_mut().zip([0, 0x5555_5555]) {
+        // Every other ray goes inward, however many there are to a packet.
+        let every_other = 0x5555_5555_u32 << (number * L::COUNT % 2);
+        for (answers, inward) in answers.iter_mut().zip([0, every_other]) {
             let found = ask(l, model, &rays, &leaving, inward);
             for (i, (t, part, _)) in found.iter().enumerate() {
                 leaving[i] = model

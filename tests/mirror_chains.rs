@@ -17,12 +17,11 @@ use etalon::integrate::intersect::{NOTHING, Rungs};
 use etalon::integrate::model::Model;
 use etalon::integrate::pool::{IntField, Pool, RealField, Rows, flags};
 use etalon::math::affine::Affine;
-use etalon::math::lanes::{Double, Lanes, Scalar, Single};
+use etalon::math::lanes::{Lanes, Scalar};
 use etalon::plan::choose::Precision;
 use etalon::plan::{Plan, Tables};
 use etalon::scene::{Overrides, parse};
 use etalon::shape::{Placed, Ray, ShapeKind, Start, Tally};
-use fearless_simd::Level;
 
 use crate::oracle_support::{Row, number, rows, vector};
 
@@ -93,15 +92,10 @@ impl Chain {
 
 /// Path lengths by the step of the path loop, as it stands in the library.
 fn by_the_loop(plan: &Plan, chain: &Chain) -> Vec<f64> {
-    let level = Level::new();
-    // The bits are the same on every instruction set; the one that all machines have will do.
-    #[cfg(target_arch = "x86_64")]
-    let simd = level.as_sse2().unwrap();
-    #[cfg(target_arch = "aarch64")]
-    let simd = level.as_neon().unwrap();
+    // The bits are the same in all lanes.
     match &plan.tables {
-        Tables::Single(tables) => follow(Single(simd), &tables.0, chain),
-        Tables::Double(tables) => follow(Double(simd), &tables.0, chain),
+        Tables::Single(tables) => follow(f32::ONE, &tables.0, chain),
+        Tables::Double(tables) => follow(f64::ONE, &tables.0, chain),
     }
 }
 

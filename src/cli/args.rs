@@ -5,12 +5,13 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use etalon::chart::figures::USUAL_ERROR;
+use etalon::render::Instructions;
 use etalon::scene::Overrides;
 use etalon::study::axis::Axis;
 use etalon::study::choice::Choice;
 
 use super::values::{
-    Crop, GoalTarget, Instructions, Layer, Panels, Pixel, PlanChoice, Seconds, Size, finite,
+    Crop, GoalTarget, Layer, Panels, Pixel, PlanChoice, Seconds, Size, finite, instructions,
     setting, share,
 };
 
@@ -138,7 +139,7 @@ pub struct Render {
     #[arg(long, value_enum, default_value_t)]
     pub plan: PlanChoice,
     /// Instruction set; the picture's bits are the same with each.
-    #[arg(long, value_enum, default_value_t)]
+    #[arg(long, default_value = "auto", value_parser = instructions())]
     pub instructions: Instructions,
     /// Say nothing on stderr but errors.
     #[arg(short, long)]
@@ -377,7 +378,7 @@ pub struct Study {
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
     /// Instruction set; the pictures' bits are the same with each.
-    #[arg(long, value_enum, default_value_t)]
+    #[arg(long, default_value = "auto", value_parser = instructions())]
     pub instructions: Instructions,
     /// Say nothing on stderr but errors.
     #[arg(short, long)]

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use etalon::render::Instructions;
 use etalon::scene::{self, Overrides};
 use etalon::study::choice::stem;
 use etalon::study::coverage::{Count, Coverage, SURVEY, Survey, cover};
@@ -11,9 +12,8 @@ use etalon::study::subject::Subject;
 use super::Answer;
 use super::args;
 use super::error::CommandError;
-use super::render::{instructions, say, threads};
+use super::render::{say, threads};
 use super::study::write;
-use super::values::Instructions;
 
 /// How many times as many samples the survey takes as a tested render: what it has not seen
 /// contributes to a tested render with a probability of a sixteenth at most, on average.
@@ -74,7 +74,7 @@ fn test(arguments: &args::Coverage, path: &Path) -> Result<Vec<(String, Coverage
     let subject = Subject {
         path: path.to_owned(),
         overrides,
-        instructions: instructions(Instructions::Auto)?,
+        instructions: Instructions::best(),
     };
     let with = |name: &str, settings: &[(&str, String)]| {
         let mut overrides = subject.overrides.clone();

@@ -96,9 +96,6 @@ pub enum CommandError {
          number of samples (sobol and independent need none)"
     )]
     TimeForStrata,
-    /// The machine does not have these instructions.
-    #[error("error: this machine has no {0} instructions")]
-    Instructions(&'static str),
     /// The threads cannot be had.
     #[error("error: cannot start the threads: {0}")]
     Threads(String),

@@ -20,14 +20,14 @@ use rayon::ThreadPool;
 
 use super::args::Render;
 use super::error::CommandError;
-use super::values::{self, Panels};
+use super::values::Panels;
 use super::{Answer, tell};
 use job::Job;
 use progress::Watch;
 
 /// Renders the scene as asked for.
 pub fn run(arguments: &Render) -> Result<Answer, CommandError> {
-    let instructions = instructions(arguments.instructions)?;
+    let instructions = arguments.instructions;
     let mut jobs = jobs(arguments)?;
     for job in &jobs {
         job.probe()?;
@@ -75,14 +75,6 @@ pub fn threads(count: Option<NonZeroUsize>) -> Result<ThreadPool, CommandError> 
         .num_threads(count)
         .build()
         .map_err(|reason| CommandError::Threads(reason.to_string()))
-}
-
-/// The instruction set asked for, if this machine has it.
-pub fn instructions(asked: values::Instructions) -> Result<Instructions, CommandError> {
-    let Some(name) = asked.name() else {
-        return Ok(Instructions::best());
-    };
-    Instructions::named(name).ok_or(CommandError::Instructions(name))
 }
 
 /// Renders and writes one picture, on the threads of the current pool; the answer is the report,

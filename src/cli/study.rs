@@ -12,7 +12,7 @@ use etalon::study::{StudyError, choice, report};
 
 use super::args;
 use super::error::CommandError;
-use super::render::{instructions, progress, say, threads};
+use super::render::{progress, say, threads};
 use super::{Answer, tell};
 use watch::Shown;
 
@@ -56,7 +56,7 @@ fn request(arguments: &args::Study) -> Result<Request, CommandError> {
         subject: Subject {
             path: scene.scene.clone(),
             overrides,
-            instructions: instructions(arguments.instructions)?,
+            instructions: arguments.instructions,
         },
         axes: arguments.over.clone(),
         replicates: arguments.replicates,

@@ -5,6 +5,8 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use clap::ValueEnum;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use etalon::render::Instructions;
 
 /// What is wrong with a value.
 #[derive(Debug, thiserror::Error)]
@@ -201,30 +203,14 @@ impl PlanChoice {
     }
 }
 
-/// Instruction sets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum Instructions {
-    /// The best this machine has.
-    #[default]
-    Auto,
-    /// AVX-512.
-    Avx512,
-    /// AVX2 and FMA.
-    Avx2,
-    /// SSE2, with fused multiply-add in software.
-    Sse2,
-}
-
-impl Instructions {
-    /// The name, unless any will do.
-    pub fn name(self) -> Option<&'static str> {
-        match self {
-            Self::Auto => None,
-            Self::Avx512 => Some("avx512"),
-            Self::Avx2 => Some("avx2"),
-            Self::Sse2 => Some("sse2"),
-        }
-    }
+/// Instruction sets by name, `auto` for the best one.
+pub fn instructions() -> impl TypedValueParser<Value = Instructions> {
+    let names = ["auto"].iter().chain(Instructions::NAMES);
+    PossibleValuesParser::new(names).try_map(|name| match name.as_str() {
+        "auto" => Ok(Instructions::best()),
+        name => Instructions::named(name)
+            .ok_or_else(|| format!("this machine has no {name} instructions")),
+    })
 }
 
 /// A finite number.

@@ -5,19 +5,11 @@ use super::extent::{self, smallest_gap, worst_error};
 use super::needs::{everything, needs};
 use crate::integrate::model::Needs;
 use crate::math::affine::Affine;
+pub use crate::math::instructions::Precision;
 use crate::math::lanes::Scalar;
 use crate::sample::replicates::Replicates;
 use crate::scene::{PrecisionChoice, Scene};
 use crate::shape::{Placed, ShapeKind};
-
-/// Arithmetic of the loop.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Precision {
-    /// f32 × 16.
-    Single,
-    /// f64 × 8.
-    Double,
-}
 
 /// Wavelengths per path where the scene does not say.
 pub const DEFAULT_WAVELENGTHS: u32 = 8;

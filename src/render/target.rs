@@ -1,6 +1,7 @@
 //! The scene as single rays meet it, exactly: for given rays and for what is visible in the middle
 //! of each pixel.
 
+use crate::math::instructions::Instructions;
 use crate::scene::{Implicit, Named, Object, Scene, Shape, Surface};
 use crate::shape::implicit::certified::{Tier, Workspace};
 use crate::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
@@ -198,20 +199,24 @@ impl Target {
 ///
 /// # Errors
 /// As [`Target::new`].
-pub fn first_hits(scene: &Scene, window: Window) -> Result<Vec<Option<FirstHit>>, Singular> {
+pub fn first_hits(
+    scene: &Scene,
+    window: Window,
+    instructions: Instructions,
+) -> Result<Vec<Option<FirstHit>>, Singular> {
     let target = Target::new(scene)?;
     let row = |y: u32| (window.x0..window.x1).map(move |x| [x, y]);
+    let workspace = || Workspace::new(instructions);
     let pixels: Vec<[u32; 2]> = (window.y0..window.y1).flat_map(row).collect();
     Ok(pixels
         .into_par_iter()
-        .map(|pixel| {
+        .map_init(workspace, |workspace, pixel| {
             let query = Query {
                 ray: centre_ray(&scene.camera, scene.image.size, pixel),
                 t_min: 0.0,
                 t_max: f64::INFINITY,
             };
-            let mut workspace = Workspace::default();
-            match target.first_hit(&query, &mut workspace, &mut Decided::default()) {
+            match target.first_hit(&query, workspace, &mut Decided::default()) {
                 First::Hit(hit) => Some(hit),
                 First::Nothing | First::Undecided(_) => None,
             }

@@ -54,7 +54,7 @@ pub fn push(
     let wanted = |layer: Layer| arguments.layers.contains(&layer);
     let kinds = [Layer::Depth, Layer::Normal, Layer::Object, Layer::Material];
     if kinds.into_iter().any(wanted) {
-        let hits = first_hits(&job.scene, job.window)?;
+        let hits = first_hits(&job.scene, job.window, arguments.instructions)?;
         if wanted(Layer::Depth) {
             let depth =
                 |hit: &Option<FirstHit>| hit.as_ref().map_or(f64::INFINITY, |hit| hit.t) as f32;

@@ -54,7 +54,7 @@ impl Survey<'_> {
     }
 }
 
-impl Job for Survey<'_> {
+impl Job<f64> for Survey<'_> {
     type Output = OverBox;
 
     #[inline(always)]

@@ -133,22 +133,8 @@ impl<T: Scalar, const C: usize> Default for Workspace<T, C> {
 /// Renders up to [`CHUNK`] requested samples; their tristimulus values are then in
 /// `workspace.tristimulus`, by request. A single request is written down vertex by vertex where
 /// `workspace.trace` asks for it.
-#[inline(never)]
-pub fn render<L: Lanes, const C: usize>(
-    l: L,
-    model: &Model<L::Scalar>,
-    spectrometer: &Spectrometer<L::Scalar>,
-    requests: &Requests,
-    workspace: &mut Workspace<L::Scalar, C>,
-) {
-    l.vectorize(
-        #[inline(always)]
-        || render_inlined(l, model, spectrometer, requests, workspace),
-    );
-}
-
 #[inline(always)]
-fn render_inlined<L: Lanes, const C: usize>(
+pub fn render<L: Lanes, const C: usize>(
     l: L,
     model: &Model<L::Scalar>,
     spectrometer: &Spectrometer<L::Scalar>,

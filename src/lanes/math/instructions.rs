@@ -1,21 +1,54 @@
-//! Instruction sets: which this machine has, and running f64 lanes on one of them from code that
-//! has no lanes itself.
+//! Instruction sets and precisions, and the one place where they become lanes to calculate in.
 
 use fearless_simd::Level;
 
-use super::lanes::{Double, Lanes};
-use super::scalar_lane::One;
+use super::lanes::{Lanes, Scalar};
 
-/// Lanes of f64 on any instruction set.
+/// Lanes of f64.
 pub trait DoubleLanes: Lanes<Scalar = f64> {}
 impl<L: Lanes<Scalar = f64>> DoubleLanes for L {}
 
-/// Something to do in f64 lanes of any kind.
-pub trait Job {
+/// Something to do in lanes of T, whatever the instruction set.
+pub trait Job<T: Scalar>: Sized {
     /// What comes of it.
     type Output;
     /// Does it; to be inlined into the caller, which is compiled for the instruction set.
-    fn run<L: DoubleLanes>(self, lanes: L) -> Self::Output;
+    fn run<L: Lanes<Scalar = T>>(self, lanes: L) -> Self::Output;
+    /// The same where there are registers for two packets ([`super::twice`]).
+    #[inline(always)]
+    fn run_amid_registers<L: Lanes<Scalar = T>>(self, lanes: L) -> Self::Output {
+        self.run(lanes)
+    }
+}
+
+/// Which scalars the lanes are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// f32.
+    Single,
+    /// f64.
+    Double,
+}
+
+impl Precision {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Single, Self::Double];
+
+    /// Unit roundoff of round-to-nearest.
+    pub fn roundoff(self) -> f64 {
+        match self {
+            Self::Single => f32::ROUNDOFF,
+            Self::Double => f64::ROUNDOFF,
+        }
+    }
+
+    /// The nearest number of this precision.
+    pub fn rounded(self, x: f64) -> f64 {
+        match self {
+            Self::Single => f64::from(x as f32),
+            Self::Double => x,
+        }
+    }
 }
 
 /// An instruction set. The results are the same bits on each.
@@ -27,55 +60,64 @@ pub enum Instructions {
     /// x86-64 with AVX2 and FMA.
     #[cfg(target_arch = "x86_64")]
     Avx2(fearless_simd::Avx2),
-    /// Any x86-64.
-    #[cfg(target_arch = "x86_64")]
-    Sse2(fearless_simd::Sse2),
     /// Arm with Neon.
     #[cfg(target_arch = "aarch64")]
     Neon(fearless_simd::Neon),
-    /// One lane after the other; the path loop, which has no such copy where there are vectors,
-    /// takes those that every machine has.
-    Scalar(Least),
+    /// What every machine of its kind has, for one lane after the other.
+    Scalar,
 }
 
-/// The vectors that every machine of its kind has.
-#[cfg(target_arch = "x86_64")]
-type Least = fearless_simd::Sse2;
-/// The vectors that every machine of its kind has.
-#[cfg(target_arch = "aarch64")]
-type Least = fearless_simd::Neon;
-/// Vectors in the compiler's hands.
-#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-type Least = fearless_simd::Fallback;
-
 impl Instructions {
+    /// Name of [`Self::Scalar`].
+    const LEAST: &'static str = if cfg!(target_arch = "x86_64") {
+        "sse2"
+    } else {
+        "scalar"
+    };
+
+    /// The names of all that machines of this kind may have, the best first.
+    pub const NAMES: &'static [&'static str] = &[
+        #[cfg(target_arch = "x86_64")]
+        "avx512",
+        #[cfg(target_arch = "x86_64")]
+        "avx2",
+        #[cfg(target_arch = "aarch64")]
+        "neon",
+        Self::LEAST,
+    ];
+
     /// All that this machine has, the best first.
     pub fn all() -> Vec<Self> {
-        let level = Level::new();
         let mut all = Vec::new();
         #[cfg(target_arch = "x86_64")]
         {
-            all.extend(level.as_avx512().map(Self::Avx512));
-            all.extend(level.as_avx2().map(Self::Avx2));
-            all.extend(level.as_sse2().map(Self::Sse2));
-            all.extend(level.as_sse2().map(Self::Scalar));
+            all.extend(Level::new().as_avx512().map(Self::Avx512));
+            all.extend(Level::new().as_avx2().map(Self::Avx2));
         }
         #[cfg(target_arch = "aarch64")]
-        {
-            all.extend(level.as_neon().map(Self::Neon));
-            all.extend(level.as_neon().map(Self::Scalar));
-        }
-        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-        {
-            let _ = level;
-            all.push(Self::Scalar(Least::new()));
-        }
+        all.extend(Level::new().as_neon().map(Self::Neon));
+        all.push(Self::Scalar);
         all
     }
 
     /// The best that this machine has.
     pub fn best() -> Self {
-        Self::all()[0]
+        Self::of(Level::new())
+    }
+
+    /// The best of those that a level of `fearless_simd` has.
+    #[inline(always)]
+    pub(super) fn of(level: Level) -> Self {
+        match level {
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512(simd) => Self::Avx512(simd),
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2(simd) => Self::Avx2(simd),
+            #[cfg(target_arch = "aarch64")]
+            Level::Neon(simd) => Self::Neon(simd),
+            #[cfg(not(target_arch = "aarch64"))]
+            _ => Self::Scalar,
+        }
     }
 
     /// The one of this name, if this machine has it.
@@ -83,42 +125,58 @@ impl Instructions {
         Self::all().into_iter().find(|own| own.name() == name)
     }
 
-    /// What it is called.
+    /// One of [`NAMES`](Self::NAMES).
     pub fn name(self) -> &'static str {
         match self {
             #[cfg(target_arch = "x86_64")]
             Self::Avx512(_) => "avx512",
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(_) => "avx2",
-            #[cfg(target_arch = "x86_64")]
-            Self::Sse2(_) => "sse2",
             #[cfg(target_arch = "aarch64")]
             Self::Neon(_) => "neon",
-            Self::Scalar(_) => "scalar",
+            Self::Scalar => Self::LEAST,
         }
     }
 
-    /// Does the job on this instruction set.
-    pub fn run<J: Job>(self, job: J) -> J::Output {
+    /// Does a job in lanes of T.
+    pub fn run<T: Scalar, J: Job<T>>(self, job: J) -> J::Output {
         match self {
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512(simd) => on(Double(simd), job),
+            Self::Avx512(simd) => amid_registers(T::packet(simd), job),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2(simd) => on(Double(simd), job),
-            #[cfg(target_arch = "x86_64")]
-            Self::Sse2(simd) => on(Double(simd), job),
+            Self::Avx2(simd) => on(T::packet(simd), job),
             #[cfg(target_arch = "aarch64")]
-            Self::Neon(simd) => on(Double(simd), job),
-            Self::Scalar(_) => on(One, job),
+            Self::Neon(simd) => on(T::packet(simd), job),
+            Self::Scalar => on(T::ONE, job),
+        }
+    }
+
+    /// Does a job that can be done in either precision.
+    pub fn run_in<J, O>(self, precision: Precision, job: J) -> O
+    where
+        J: Job<f32, Output = O> + Job<f64, Output = O>,
+    {
+        match precision {
+            Precision::Single => self.run::<f32, J>(job),
+            Precision::Double => self.run::<f64, J>(job),
         }
     }
 }
 
 /// The boundary at which code for an instruction set begins.
 #[inline(never)]
-fn on<L: DoubleLanes, J: Job>(lanes: L, job: J) -> J::Output {
+fn on<L: Lanes, J: Job<L::Scalar>>(lanes: L, job: J) -> J::Output {
     lanes.vectorize(
         #[inline(always)]
         || job.run(lanes),
+    )
+}
+
+/// The same for one with registers for two packets: 32 of them, each as wide as a packet.
+#[inline(never)]
+fn amid_registers<L: Lanes, J: Job<L::Scalar>>(lanes: L, job: J) -> J::Output {
+    lanes.vectorize(
+        #[inline(always)]
+        || job.run_amid_registers(lanes),
     )
 }

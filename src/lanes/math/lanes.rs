@@ -1,14 +1,18 @@
 //! Lanes: the numbers of the inner loop.
 //!
-//! The loop is written once over [`Lanes`]: [`Single`] is f32 × 16, [`Double`] is f64 × 8, always
-//! as many logical lanes whatever the machine, so that the bits of an image do not depend on the
-//! instruction set. Every operation is IEEE-exact or fused on all of them; approximate
-//! reciprocals are not offered.
+//! The loop is written once over [`Lanes`]: [`Single`] is f32 × 16, [`Double`] is f64 × 8, and
+//! machines without such vectors take one lane after the other ([`One`]). No lane sees its
+//! neighbours and every operation is IEEE-exact or fused in all of them, so that the bits of an
+//! image do not depend on the instruction set; approximate reciprocals are not offered.
 
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
+use fearless_simd::Simd;
+
+use super::instructions::Instructions;
 use super::lookup::SMALL;
+use super::scalar_lane::{One, OneSingle};
 
 mod double;
 mod single;
@@ -36,6 +40,14 @@ pub trait Scalar:
 {
     /// Unit roundoff u of round-to-nearest: 2⁻²⁴ or 2⁻⁵³.
     const ROUNDOFF: f64;
+    /// Packets of it.
+    type Packet<S: Simd>: Lanes<Scalar = Self>;
+    /// One of it as lanes.
+    type One: Lanes<Scalar = Self>;
+    /// The token of one.
+    const ONE: Self::One;
+    /// The token of packets.
+    fn packet<S: Simd>(simd: S) -> Self::Packet<S>;
     /// The nearest value of this type.
     fn from_f64(x: f64) -> Self;
     /// Exact widening.
@@ -49,9 +61,16 @@ pub trait Scalar:
 }
 
 macro_rules! scalar {
-    ($scalar:ty, $roundoff:expr) => {
+    ($scalar:ty, $roundoff:expr, $packet:ident, $one:ident) => {
         impl Scalar for $scalar {
             const ROUNDOFF: f64 = $roundoff;
+            type Packet<S: Simd> = $packet<S>;
+            type One = $one;
+            const ONE: $one = $one;
+            #[inline(always)]
+            fn packet<S: Simd>(simd: S) -> $packet<S> {
+                $packet(simd)
+            }
             #[inline(always)]
             fn from_f64(x: f64) -> Self {
                 x as $scalar
@@ -76,8 +95,8 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f32, 1.0 / 16_777_216.0);
-scalar!(f64, 1.0 / 9_007_199_254_740_992.0);
+scalar!(f32, 1.0 / 16_777_216.0, Single, OneSingle);
+scalar!(f64, 1.0 / 9_007_199_254_740_992.0, Double, One);
 
 /// One truth value a lane.
 pub trait Mask:
@@ -172,6 +191,8 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     /// Bits of a uniform variate that the significand holds.
     const UNIFORM_BITS: u32;
 
+    /// The instruction set.
+    fn instructions(self) -> Instructions;
     /// The token of one packet.
     fn narrow(self) -> Self::Narrow;
     /// Runs `f` compiled for this instruction set; wrapped in a function that is not inlined, the

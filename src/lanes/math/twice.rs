@@ -5,6 +5,7 @@
 
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
+use super::instructions::Instructions;
 use super::lanes::{Int, Lanes, Mask, Real};
 use super::lookup::SMALL;
 
@@ -128,6 +129,10 @@ impl<L: Lanes> Lanes for Twice<L> {
     const COUNT: usize = 2 * L::COUNT;
     const UNIFORM_BITS: u32 = L::UNIFORM_BITS;
 
+    #[inline(always)]
+    fn instructions(self) -> Instructions {
+        self.0.instructions()
+    }
     #[inline(always)]
     fn narrow(self) -> L::Narrow {
         self.0.narrow()

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::film::names;
 use crate::film::pixels::Estimate;
 use crate::film::spectral::channel_name;
+use crate::math::instructions::Instructions;
 use crate::plan::{Plan, PlanError};
 use crate::render::bins::{BinError, BinGrid};
 use crate::render::session::{Rendered, Request, Unwatched, render, render_binned};
@@ -82,7 +83,11 @@ impl Case {
     /// [`Singular`] where the first hits of its pixels cannot be had.
     pub fn new(name: &str, mut scene: Scene, bands: Option<BinGrid>) -> Result<Self, Singular> {
         scene.image.replicates = Some(REPLICATES);
-        let hits = first_hits(&scene, Window::whole(scene.image.size))?;
+        let hits = first_hits(
+            &scene,
+            Window::whole(scene.image.size),
+            Instructions::best(),
+        )?;
         let shown: Vec<Option<usize>> = hits
             .iter()
             .map(|hit| hit.as_ref().map(|h| scene.objects[h.object].value.material))

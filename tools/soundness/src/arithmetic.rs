@@ -71,7 +71,7 @@ pub struct Apply<'a> {
     pub unsound: bool,
 }
 
-impl Job for Apply<'_> {
+impl Job<f64> for Apply<'_> {
     type Output = Bounds;
 
     #[inline(always)]

@@ -77,7 +77,7 @@ pub struct Apply<'a> {
     pub b: &'a Bounds,
 }
 
-impl Job for Apply<'_> {
+impl Job<f64> for Apply<'_> {
     /// Bounds, and where the function may be undefined.
     type Output = (Bounds, Vec<bool>);
 

@@ -3,22 +3,17 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{f64x8, mask64x8, u64x8};
 
-use super::vector::{compares_once, fuses, lanes, mask, real, reversed_bytes};
+use super::vector::{compares_once, lanes, mask, real, reversed_bytes};
 use super::{Int, Lanes, Mask, Real};
+use crate::math::instructions::Instructions;
 use crate::math::lookup::{self, SMALL};
 
 /// Double precision: f64 × 8.
 #[derive(Clone, Copy)]
 pub struct Double<S: Simd>(pub S);
 
-/// The fused multiply-add in software: one copy, for it is long.
-#[inline(never)]
-fn fused_by_call<S: Simd>(x: f64x8<S>, a: f64x8<S>, b: f64x8<S>) -> f64x8<S> {
-    x.mul_add_precise(a, b)
-}
-
 mask!(mask64x8, 8);
-real!(f64x8, mask64x8, fused_by_call);
+real!(f64x8, mask64x8);
 
 /// The low 32 bits of each 64-bit lane.
 #[inline(always)]

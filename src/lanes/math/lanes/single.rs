@@ -3,22 +3,17 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x16, i32x16, mask32x16, u32x16};
 
-use super::vector::{compares_once, fuses, lanes, mask, real, reversed_bytes};
+use super::vector::{compares_once, lanes, mask, real, reversed_bytes};
 use super::{Int, Lanes, Mask, Real};
+use crate::math::instructions::Instructions;
 use crate::math::lookup::{self, SMALL};
 
 /// Single precision: f32 × 16.
 #[derive(Clone, Copy)]
 pub struct Single<S: Simd>(pub S);
 
-/// The fused multiply-add in software: one copy, for it is long.
-#[inline(never)]
-fn fused_by_call<S: Simd>(x: f32x16<S>, a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
-    x.mul_add_precise(a, b)
-}
-
 mask!(mask32x16, 16);
-real!(f32x16, mask32x16, fused_by_call);
+real!(f32x16, mask32x16);
 
 impl<S: Simd> Int for u32x16<S> {
     type Mask = mask32x16<S>;

@@ -1,18 +1,9 @@
 //! What vectors of both precisions have in common.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, u8x16, u8x64};
+use fearless_simd::{u8x16, u8x64};
 
 use super::inlined;
-
-/// Whether an instruction set has a fused multiply-add; known at compile time once inlined.
-#[inline(always)]
-pub fn fuses(level: Level) -> bool {
-    #[cfg(target_arch = "x86_64")]
-    return matches!(level, Level::Avx2(_) | Level::Avx512(_));
-    #[cfg(not(target_arch = "x86_64"))]
-    return !level.is_fallback();
-}
 
 /// Whether the instruction set's own minimum and maximum are `a < b ? a : b` and `a > b ? a : b`,
 /// as `minps` and its kin are on x86.
@@ -38,16 +29,12 @@ macro_rules! mask {
 }
 
 macro_rules! real {
-    ($real:ident, $mask:ident, $fused_by_call:ident) => {
+    ($real:ident, $mask:ident) => {
         impl<S: Simd> Real for $real<S> {
             type Mask = $mask<S>;
             #[inline(always)]
             fn mul_add(self, a: Self, b: Self) -> Self {
-                if fuses(self.token().level()) {
-                    self.mul_add_precise(a, b)
-                } else {
-                    $fused_by_call(self, a, b)
-                }
+                self.mul_add_precise(a, b)
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
@@ -112,6 +99,10 @@ macro_rules! real {
 /// The methods of [`super::Lanes`] that are alike.
 macro_rules! lanes {
     ($real:ident, $mask:ident, $scalar:ty, $count:literal) => {
+        #[inline(always)]
+        fn instructions(self) -> Instructions {
+            Instructions::of(self.0.level())
+        }
         #[inline(always)]
         fn narrow(self) -> Self {
             self

@@ -13,12 +13,11 @@ mod normal;
 mod place;
 mod stream;
 
-use fearless_simd::Level;
 use glam::DVec3;
 
 pub use place::{Certified, Limits};
 
-use crate::math::lanes::{Double, Lanes};
+use crate::math::instructions::{DoubleLanes, Instructions, Job};
 use crate::math::number::{binary_exponent, power_of_two};
 use crate::math::words::{Pair, Plain, Row};
 use crate::root::exact::ExactRoot;
@@ -135,30 +134,63 @@ pub struct Wish {
     pub exact: bool,
 }
 
-/// Room for the forms of a packet.
-#[derive(Debug, Default)]
+/// What finders work with.
+#[derive(Debug)]
 pub struct Workspace {
+    /// The instruction set of their kernels; the answers are the same with each.
+    pub instructions: Instructions,
+    /// Room for the forms of a packet.
     rows: Vec<Row>,
 }
 
-/// Lanes of f64 × 8, which the kernels are compiled for.
-pub trait DoubleLanes: Lanes<Scalar = f64> {}
-impl<L: Lanes<Scalar = f64>> DoubleLanes for L {}
+impl Workspace {
+    /// To work with an instruction set.
+    pub fn new(instructions: Instructions) -> Self {
+        Self {
+            instructions,
+            rows: Vec::new(),
+        }
+    }
+}
+
+/// With the best instruction set that this machine has.
+impl Default for Workspace {
+    fn default() -> Self {
+        Self::new(Instructions::best())
+    }
+}
+
+/// A packet to be asked in one arithmetic.
+struct Ask<'a> {
+    placed: &'a Certified,
+    packet: &'a Packet,
+    asked: u32,
+    /// In double-double.
+    sharper: bool,
+    rows: &'a mut [Row],
+}
+
+impl Job<f64> for Ask<'_> {
+    type Output = Answers;
+
+    #[inline(always)]
+    fn run<L: DoubleLanes>(self, l: L) -> Answers {
+        if self.sharper {
+            kernel::first_hits::<_, Pair<_>>(l, self)
+        } else {
+            kernel::first_hits::<_, Plain<_>>(l, self)
+        }
+    }
+}
 
 impl Certified {
     /// The first hits of a packet, by the cheapest arithmetic that is certain of each.
-    pub fn first_hits(
-        &self,
-        level: Level,
-        packet: &Packet,
-        wish: Wish,
-        workspace: &mut Workspace,
-    ) -> Answers {
-        let mut answers = self.in_lanes(level, packet, packet.active, false, workspace);
+    pub fn first_hits(&self, packet: &Packet, wish: Wish, workspace: &mut Workspace) -> Answers {
+        let mut answers = self.in_lanes(packet, packet.active, false, workspace);
         let mut open = packet.active & !(answers.found | answers.absent);
         let again = answers.unfinished(packet, wish);
         if again != 0 {
-            let sharper = self.in_lanes(level, packet, again, true, workspace);
+            let sharper = self.in_lanes(packet, again, true, workspace);
             let decided = sharper.found | sharper.absent;
             for lane in lanes(again & (open | decided)) {
                 answers.tiers[lane] = Tier::DoubleDouble;
@@ -169,7 +201,7 @@ impl Certified {
         if wish.exact {
             for lane in lanes(open) {
                 answers.tiers[lane] = Tier::Exact;
-                self.settle(level, packet, lane, &mut answers, workspace);
+                self.settle(packet, lane, &mut answers, workspace);
             }
         }
         answers
@@ -184,13 +216,12 @@ impl Certified {
     #[cold]
     fn settle(
         &self,
-        level: Level,
         packet: &Packet,
         lane: usize,
         answers: &mut Answers,
         workspace: &mut Workspace,
     ) {
-        if !self.multiple_root(level, packet, lane, answers, workspace) {
+        if !self.multiple_root(packet, lane, answers, workspace) {
             self.decide(packet, lane, answers);
         }
     }
@@ -198,7 +229,6 @@ impl Certified {
     /// One arithmetic's answers.
     fn in_lanes(
         &self,
-        level: Level,
         packet: &Packet,
         asked: u32,
         sharper: bool,
@@ -208,40 +238,13 @@ impl Certified {
         if workspace.rows.len() < rows {
             workspace.rows.resize(rows, Row::default());
         }
-        let rows = &mut workspace.rows[..];
-        macro_rules! on {
-            ($simd:expr) => {{
-                let l = Double($simd);
-                if sharper {
-                    kernel::first_hits::<_, Pair<_>>(l, self, packet, asked, rows)
-                } else {
-                    kernel::first_hits::<_, Plain<_>>(l, self, packet, asked, rows)
-                }
-            }};
-        }
-        #[cfg(target_arch = "x86_64")]
-        {
-            if let Some(simd) = level.as_avx512() {
-                return on!(simd);
-            }
-            if let Some(simd) = level.as_avx2() {
-                return on!(simd);
-            }
-            if let Some(simd) = level.as_sse2() {
-                return on!(simd);
-            }
-        }
-        #[cfg(target_arch = "aarch64")]
-        if let Some(simd) = level.as_neon() {
-            return on!(simd);
-        }
-        let _ = level;
-        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-        {
-            return on!(fearless_simd::Fallback::new());
-        }
-        #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
-        Answers::default()
+        workspace.instructions.run(Ask {
+            placed: self,
+            packet,
+            asked,
+            sharper,
+            rows: &mut workspace.rows,
+        })
     }
 
     /// Tries whether the first hit of an undecided ray is a multiple root at a t of few bits close
@@ -251,7 +254,6 @@ impl Certified {
     #[cold]
     fn multiple_root(
         &self,
-        level: Level,
         packet: &Packet,
         lane: usize,
         answers: &mut Answers,
@@ -282,7 +284,7 @@ impl Certified {
             };
             before.t_max[lane] = t;
             for sharper in [false, true] {
-                let found = self.in_lanes(level, &before, 1 << lane, sharper, workspace);
+                let found = self.in_lanes(&before, 1 << lane, sharper, workspace);
                 if found.absent >> lane & 1 == 1 {
                     answers.found |= 1 << lane;
                     answers.t[lane] = t;

@@ -24,7 +24,6 @@ pub const WORK_BOUND: u32 = 2_000;
 #[derive(Debug, Clone)]
 pub struct EnclosedField {
     factors: Vec<EnclosedFactor>,
-    instructions: Instructions,
 }
 
 /// A factor of a field.
@@ -50,11 +49,6 @@ impl EnclosedFactor {
 impl EnclosedField {
     /// Compiles a field.
     pub fn new(tape: &Tape) -> Self {
-        Self::with_instructions(tape, Instructions::best())
-    }
-
-    /// Compiles a field for an instruction set; the results are the same with each.
-    pub fn with_instructions(tape: &Tape, instructions: Instructions) -> Self {
         let parts = tape.factors().factors;
         let parts = parts.iter();
         let mut factors: Vec<EnclosedFactor> = parts
@@ -65,10 +59,7 @@ impl EnclosedField {
         if factors.len() != 1 && !total {
             factors = vec![EnclosedFactor::new(tape, 1)];
         }
-        Self {
-            factors,
-            instructions,
-        }
+        Self { factors }
     }
 
     /// With bounds of the factors' gradients over a box, which sphere tracing can use besides
@@ -94,7 +85,7 @@ impl EnclosedField {
                 evaluations: 0,
             };
         };
-        self.instructions.run(First {
+        search.instructions.run(First {
             field: self,
             clipped: &clipped,
             searching: search,
@@ -103,8 +94,10 @@ impl EnclosedField {
 }
 
 /// How to search a ray.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct Searching {
+    /// In which instructions; the zeros are the same with each.
+    pub instructions: Instructions,
     /// Which finder.
     pub method: Method,
     /// Most evaluations for each factor.
@@ -117,6 +110,7 @@ pub struct Searching {
 impl Default for Searching {
     fn default() -> Self {
         Self {
+            instructions: Instructions::best(),
             method: Method::Subdivision,
             bound: WORK_BOUND,
             leaving: None,
@@ -177,7 +171,7 @@ impl First<'_> {
     }
 }
 
-impl Job for First<'_> {
+impl Job<f64> for First<'_> {
     type Output = Search;
 
     #[inline(always)]

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::certified::{Answers, Packet, Tier, WIDTH};
 use super::enclosed::{EnclosedField, Method, Searching, WORK_BOUND};
 use crate::math::affine::Affine;
+use crate::math::instructions::Instructions;
 use crate::math::interval::ScalarInterval;
 use crate::math::number::{Number, power_of_two};
 use crate::math::scalar_lane::One;
@@ -65,15 +66,21 @@ impl EnclosedPacket {
     }
 
     /// The first hits of a packet.
-    pub fn first_hits(&self, packet: &Packet) -> Answers {
+    pub fn first_hits(&self, instructions: Instructions, packet: &Packet) -> Answers {
         let mut answers = Answers::default();
         for lane in (0..WIDTH).filter(|lane| packet.active >> lane & 1 == 1) {
-            self.answer(packet, lane, &mut answers);
+            self.answer(instructions, packet, lane, &mut answers);
         }
         answers
     }
 
-    fn answer(&self, packet: &Packet, lane: usize, answers: &mut Answers) {
+    fn answer(
+        &self,
+        instructions: Instructions,
+        packet: &Packet,
+        lane: usize,
+        answers: &mut Answers,
+    ) {
         let at = |v: &[[f64; WIDTH]; 3]| DVec3::from_array(v.map(|axis| axis[lane]));
         let ray = Ray {
             origin: at(&packet.origin),
@@ -85,6 +92,7 @@ impl EnclosedPacket {
         let extent = ray.origin.abs().max_element();
         let shift = 16.0 * packet.roundoff * extent * self.largest_row;
         let searching = Searching {
+            instructions,
             method: self.method,
             bound: WORK_BOUND,
             leaving: leaving.then_some(shift),

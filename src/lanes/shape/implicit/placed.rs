@@ -1,7 +1,5 @@
 //! An implicit surface in the world and a ray's first hit with it, by the finder of its choice.
 
-use fearless_simd::Level;
-
 use super::baseline::{Stepped, SteppingFinder};
 use super::certified::{Answers, Certified, Packet, Tier, Wish, Workspace};
 use super::enclosed_packet::EnclosedPacket;
@@ -65,7 +63,6 @@ impl Finder {
     /// narrow enclosures where they cost more.
     pub fn first_hits(
         &self,
-        level: Level,
         packet: &Packet,
         sharp: bool,
         workspace: &mut Workspace,
@@ -77,10 +74,10 @@ impl Finder {
                     sharp,
                     exact: *exact,
                 };
-                Some(certified.first_hits(level, packet, wish, workspace))
+                Some(certified.first_hits(packet, wish, workspace))
             }
             Self::Interval(enclosed) | Self::SphereTrace(enclosed) => {
-                Some(enclosed.first_hits(packet))
+                Some(enclosed.first_hits(workspace.instructions, packet))
             }
         }
     }
@@ -149,7 +146,6 @@ impl ImplicitTally {
 pub struct PlacedImplicit {
     stepping: SteppingFinder,
     finder: Finder,
-    level: Level,
 }
 
 /// A hit.
@@ -190,7 +186,6 @@ impl PlacedImplicit {
         Ok(Self {
             stepping: SteppingFinder::new(implicit, to_world)?,
             finder: Finder::new(implicit, to_world)?,
-            level: Level::new(),
         })
     }
 
@@ -231,7 +226,7 @@ impl PlacedImplicit {
         let mut packet = Packet::default();
         let limits = [query.t_min, query.t_max];
         packet.set(0, query.ray.origin, query.ray.direction, limits);
-        let answers = self.finder.first_hits(self.level, &packet, true, workspace);
+        let answers = self.finder.first_hits(&packet, true, workspace);
         let Some(answers) = answers else {
             tally.uncertified += 1;
             let stepped = self.stepping.first_hit(query);

@@ -7,12 +7,12 @@
 
 use std::cell::RefCell;
 
-use fearless_simd::Level;
 use glam::DVec3;
 
 use crate::field::evaluate::Field;
 use crate::field::normal;
 use crate::math::affine::Affine;
+use crate::math::instructions::Instructions;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, WIDEST, inlined};
 use crate::math::vec3::{Rows, Vec3};
 use crate::shape::SingularMatrix;
@@ -40,7 +40,6 @@ pub struct LaneImplicit<T> {
     /// 16 unit roundoffs of a world coordinate of 1, as a length in object coordinates.
     rounding: T,
     finder: Finder,
-    level: Level,
 }
 
 thread_local! {
@@ -99,7 +98,6 @@ impl<T: Scalar> LaneImplicit<T> {
             bounds: OuterBox::new(&Bounds::of_image(to_world, inside[0], inside[1])),
             rounding: T::from_f64(16.0 * T::ROUNDOFF * largest_row),
             finder: Finder::new(implicit, to_world)?,
-            level: Level::new(),
         })
     }
 
@@ -141,7 +139,7 @@ impl<T: Scalar> LaneImplicit<T> {
                     finder => {
                         let rays = PacketRays::new(l, ray);
                         let bits = [active.bits(), start.on.bits()];
-                        let (t, found) = rays.ask(finder, self.level, bits, L::COUNT, tally);
+                        let (t, found) = rays.ask(l.instructions(), finder, bits, L::COUNT, tally);
                         (l.load(&t), l.mask_from_bits(found))
                     }
                 };
@@ -331,8 +329,8 @@ impl<T: Scalar> PacketRays<T> {
     #[inline(never)]
     fn ask(
         &self,
+        instructions: Instructions,
         finder: &Finder,
-        level: Level,
         [active, leaving]: [u32; 2],
         count: usize,
         tally: &mut ImplicitTally,
@@ -355,8 +353,10 @@ impl<T: Scalar> PacketRays<T> {
                     packet.direction[axis][lane] = self.direction[axis][base + lane].to_f64();
                 }
             }
-            let answers = WORKSPACE
-                .with_borrow_mut(|workspace| finder.first_hits(level, &packet, false, workspace));
+            let answers = WORKSPACE.with_borrow_mut(|workspace| {
+                workspace.instructions = instructions;
+                finder.first_hits(&packet, false, workspace)
+            });
             let answers = answers.unwrap_or_default();
             let decided = answers.found | answers.absent;
             for lane in (0..WIDTH).filter(|lane| packet.active >> lane & 1 == 1) {

@@ -21,7 +21,8 @@ use std::time::Instant;
 use etalon::field::expression::Expression;
 use etalon::field::named;
 use etalon::math::affine::Affine;
-use etalon::math::lanes::{Double, Lanes};
+use etalon::math::instructions::{Instructions, Job};
+use etalon::math::lanes::{Lanes, Mask};
 use etalon::math::vec3::Vec3;
 use etalon::scene::{FinderChoice, Implicit};
 use etalon::shape::Query;
@@ -30,7 +31,6 @@ use etalon::shape::implicit::certified::{Certified, Packet, WIDTH, Wish, Workspa
 use etalon::shape::lanes::LaneRay;
 use etalon::shape::lanes::implicit::{LaneImplicit, StartSign};
 use etalon_method::finders::{CLASSES, Oracle};
-use fearless_simd::Level;
 use glam::DVec3;
 use yardstick::Yardstick;
 
@@ -112,58 +112,50 @@ fn packets(rays: &[Ray]) -> Vec<Packet> {
 
 /// Seconds of one pass by the certified finder.
 fn certified(surface: &Surface, packets: &[Packet], exact: bool) -> f64 {
-    let (level, mut workspace) = (Level::new(), Workspace::default());
+    let mut workspace = Workspace::default();
     let wish = Wish {
         sharp: false,
         exact,
     };
     best(|| {
         let finder = &surface.certified;
-        let answers = finder.first_hits_of_all(level, packets, wish, &mut workspace);
+        let answers = finder.first_hits_of_all(packets, wish, &mut workspace);
         answers.iter().map(|a| a.found).fold(0, u32::wrapping_add)
     })
 }
 
 /// The same by 256 steps and bisection, in the same lanes.
-fn stepping<L: Lanes<Scalar = f64>>(l: L, surface: &Surface, packets: &[Packet]) -> f64 {
-    let start = StartSign::<L> {
-        on: l.mask(false),
-        inward: l.mask(false),
-    };
-    best(|| {
-        let mut found = 0_u32;
-        for packet in packets {
-            let vector =
-                |v: &[[f64; WIDTH]; 3]| Vec3::new(l.load(&v[0]), l.load(&v[1]), l.load(&v[2]));
-            let ray = LaneRay::<L>::new(l, vector(&packet.origin), vector(&packet.direction));
-            let active = l.mask_from_bits(packet.active);
-            let (_, hit) = surface.stepping.first_change(l, &ray, start, active);
-            found = found.wrapping_add(etalon::math::lanes::Mask::bits(hit));
-        }
-        found
-    })
+struct Stepping<'a> {
+    surface: &'a Surface,
+    packets: &'a [Packet],
 }
 
-fn stepping_best(surface: &Surface, packets: &[Packet]) -> f64 {
-    let level = Level::new();
-    #[cfg(target_arch = "x86_64")]
-    {
-        if let Some(simd) = level.as_avx512() {
-            return stepping(Double(simd), surface, packets);
-        }
-        if let Some(simd) = level.as_avx2() {
-            return stepping(Double(simd), surface, packets);
-        }
-        if let Some(simd) = level.as_sse2() {
-            return stepping(Double(simd), surface, packets);
-        }
+impl Job<f64> for Stepping<'_> {
+    type Output = f64;
+
+    fn run<L: Lanes<Scalar = f64>>(self, l: L) -> f64 {
+        let start = StartSign::<L> {
+            on: l.mask(false),
+            inward: l.mask(false),
+        };
+        best(|| {
+            let mut found = 0_u32;
+            for packet in self.packets {
+                for at in (0..WIDTH).step_by(L::COUNT) {
+                    let vector = |v: &[[f64; WIDTH]; 3]| {
+                        let [x, y, z] = v.each_ref().map(|v| l.load(&v[at..]));
+                        Vec3::new(x, y, z)
+                    };
+                    let (o, d) = (vector(&packet.origin), vector(&packet.direction));
+                    let ray = LaneRay::<L>::new(l, o, d);
+                    let active = l.mask_from_bits(packet.active >> at);
+                    let (_, hit) = self.surface.stepping.first_change(l, &ray, start, active);
+                    found = found.wrapping_add(hit.bits());
+                }
+            }
+            found
+        })
     }
-    #[cfg(target_arch = "aarch64")]
-    if let Some(simd) = level.as_neon() {
-        return stepping(Double(simd), surface, packets);
-    }
-    let _ = (surface, packets, level);
-    f64::NAN
 }
 
 const FINDERS: [&str; 5] = [
@@ -202,7 +194,10 @@ fn times(surface: &Surface, rays: &[Ray]) -> [f64; 5] {
     });
     [
         march,
-        stepping_best(surface, &packets),
+        Instructions::best().run(Stepping {
+            surface,
+            packets: &packets,
+        }),
         yardstick,
         certified(surface, &packets, false),
         certified(surface, &packets, true),
@@ -265,16 +260,14 @@ fn view(name: &str, size: usize, distance: f64, file: &str) {
     let rays: Vec<Ray> = (0..size * size).map(pixel).collect();
     let packets = packets(&rays);
     let seconds = certified(&surface, &packets, true);
-    let (level, mut workspace) = (Level::new(), Workspace::default());
+    let mut workspace = Workspace::default();
     let wish = Wish {
         sharp: true,
         exact: true,
     };
     let mut bytes = Vec::new();
     for packet in &packets {
-        let answers = surface
-            .certified
-            .first_hits(level, packet, wish, &mut workspace);
+        let answers = surface.certified.first_hits(packet, wish, &mut workspace);
         for lane in (0..WIDTH).filter(|lane| packet.active >> lane & 1 == 1) {
             let hit = answers.found >> lane & 1 == 1;
             let t = if hit { answers.t[lane] } else { f64::INFINITY };

@@ -1,8 +1,9 @@
 //! One packet in one arithmetic.
 
 use super::place::{Certified, FactorField, Inverse};
-use super::{Answers, DoubleLanes, Packet, SHARP, WIDTH};
+use super::{Answers, Ask, Packet, SHARP, WIDTH};
 use crate::field::program::Step;
+use crate::math::instructions::DoubleLanes;
 use crate::math::lanes::{Mask, Real};
 use crate::math::words::{Row, Word};
 use crate::root::bernstein::{Problem, Roots, first_roots};
@@ -20,32 +21,34 @@ struct Clipped<L: DoubleLanes> {
     lost: L::Mask,
 }
 
-/// The first hits, as far as this arithmetic can tell.
+/// The first hits, as far as this arithmetic can tell; as many rays at once as there are lanes.
 #[inline(never)]
-pub(super) fn first_hits<L: DoubleLanes, W: Word<L>>(
-    l: L,
-    placed: &Certified,
-    packet: &Packet,
-    asked: u32,
-    rows: &mut [Row],
-) -> Answers {
+pub(super) fn first_hits<L: DoubleLanes, W: Word<L>>(l: L, ask: Ask<'_>) -> Answers {
     l.vectorize(
         #[inline(always)]
         || {
-            let tier = W::ROWS - 1;
-            let inverse = &placed.inverse[tier];
-            let local = Local::<L, W>::new(l, inverse, packet);
-            let asked = l.mask_from_bits(asked);
-            let clipped = local.clip(l, placed, inverse, packet);
-            let mut all = Combined::new(l, asked, &clipped);
-            if all.open.any() {
-                let ends = local.ends(l, &clipped);
-                for factor in &placed.factors {
-                    expand::<L, W>(l, factor, &ends, rows);
-                    all.join::<W>(l, factor, packet, &clipped, rows);
+            let Ask { placed, packet, .. } = ask;
+            let rows = ask.rows;
+            let mut answers = Answers::default();
+            for at in (0..WIDTH).step_by(L::COUNT) {
+                let asked = l.mask_from_bits(ask.asked >> at);
+                if L::COUNT < WIDTH && !asked.any() {
+                    continue;
                 }
+                let inverse = &placed.inverse[W::ROWS - 1];
+                let local = Local::<L, W>::new(l, inverse, packet, at);
+                let clipped = local.clip(l, placed, inverse, packet, at);
+                let mut all = Combined::new(l, asked, &clipped);
+                if all.open.any() {
+                    let ends = local.ends(l, &clipped);
+                    for factor in &placed.factors {
+                        expand::<L, W>(l, factor, &ends, rows);
+                        all.join::<W>(l, factor, (packet, at), &clipped, rows);
+                    }
+                }
+                all.answer(l, placed, &local, &clipped, at, &mut answers);
             }
-            all.answers(l, placed, &local, &clipped)
+            answers
         },
     )
 }
@@ -61,10 +64,18 @@ struct Local<L: DoubleLanes, W: Word<L>> {
 
 impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
     #[inline(always)]
-    fn new(l: L, inverse: &Inverse, packet: &Packet) -> Self {
+    fn new(l: L, inverse: &Inverse, packet: &Packet, at: usize) -> Self {
         let (o, d) = (&packet.origin, &packet.direction);
-        let o = [l.load(&o[0]), l.load(&o[1]), l.load(&o[2])];
-        let d = [l.load(&d[0]), l.load(&d[1]), l.load(&d[2])];
+        let o = [
+            l.load(&o[0][at..]),
+            l.load(&o[1][at..]),
+            l.load(&o[2][at..]),
+        ];
+        let d = [
+            l.load(&d[0][at..]),
+            l.load(&d[1][at..]),
+            l.load(&d[2][at..]),
+        ];
         let mut local = Self {
             origin: o.map(
                 #[inline(always)]
@@ -94,7 +105,14 @@ impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
 
     /// The part of the lines within the box and the limits, and a little more.
     #[inline(always)]
-    fn clip(&self, l: L, placed: &Certified, inverse: &Inverse, packet: &Packet) -> Clipped<L> {
+    fn clip(
+        &self,
+        l: L,
+        placed: &Certified,
+        inverse: &Inverse,
+        packet: &Packet,
+        at: usize,
+    ) -> Clipped<L> {
         let zero = l.real(0.0);
         let tiny = l.real(f64::MIN_POSITIVE * 1e16);
         let o = self.origin.map(
@@ -120,8 +138,7 @@ impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
         let slack = reach.mul_add(l.real(4.0 * f64::EPSILON), map_error);
         let mut lost = !slack.lt(l.real(placed.margin * 0.5)) | !fastest.gt(tiny);
         let mut meets = l.mask(true);
-        let t_min = l.load(&packet.t_min);
-        let (mut near, mut far) = (t_min, l.load(&packet.t_max));
+        let (mut near, mut far) = (l.load(&packet.t_min[at..]), l.load(&packet.t_max[at..]));
         for i in 0..3 {
             let lower = l.real(placed.outer.lower[i]) - slack;
             let upper = l.real(placed.outer.upper[i]) + slack;
@@ -357,7 +374,7 @@ impl<L: DoubleLanes> Combined<L> {
         &mut self,
         l: L,
         factor: &FactorField,
-        packet: &Packet,
+        (packet, at): (&Packet, usize),
         clipped: &Clipped<L>,
         rows: &[Row],
     ) {
@@ -374,7 +391,7 @@ impl<L: DoubleLanes> Combined<L> {
             start_error: rounding.mul_add(l.real(bounds.change), error + l.real(factor.root_error)),
             accounted: factor.accounted,
             roots_at_end: packet.roots_at_end,
-            on_root: l.mask_from_bits(packet.leaving),
+            on_root: l.mask_from_bits(packet.leaving >> at),
             active: self.open & !self.undecided,
         };
         let rows = &rows[W::ROWS * result.at..];
@@ -408,13 +425,15 @@ impl<L: DoubleLanes> Combined<L> {
     }
 
     #[inline(always)]
-    fn answers<W: Word<L>>(
+    fn answer<W: Word<L>>(
         self,
         l: L,
         placed: &Certified,
         local: &Local<L, W>,
         clipped: &Clipped<L>,
-    ) -> Answers {
+        at: usize,
+        answers: &mut Answers,
+    ) {
         let low = self.low.max(clipped.near);
         let high = self.high.min(clipped.far);
         let mut sure = self.found & !self.undecided;
@@ -429,22 +448,20 @@ impl<L: DoubleLanes> Combined<L> {
             }
         }
         let absent = self.absent | (self.open & !self.found & !self.undecided);
-        let mut answers = Answers {
-            found: sure.bits(),
-            absent: absent.bits(),
-            blurred: (high - low)
-                .gt((clipped.far - clipped.near) * l.real(SHARP))
-                .bits(),
-            ..Answers::default()
-        };
-        l.store(self.t.max(low).min(high), &mut answers.t);
-        l.store(low, &mut answers.low);
-        l.store(self.doubt, &mut answers.doubt);
-        l.store(clipped.far - clipped.near, &mut answers.stretch);
-        l.store(high, &mut answers.high);
+        let width = clipped.far - clipped.near;
+        answers.found |= sure.bits() << at;
+        answers.absent |= absent.bits() << at;
+        answers.blurred |= (high - low).gt(width * l.real(SHARP)).bits() << at;
+        l.store(self.t.max(low).min(high), &mut answers.t[at..]);
+        l.store(low, &mut answers.low[at..]);
+        l.store(self.doubt, &mut answers.doubt[at..]);
+        l.store(width, &mut answers.stretch[at..]);
+        l.store(high, &mut answers.high[at..]);
         let mut multiplicity = [0.0; WIDTH];
-        l.store(self.multiplicity, &mut multiplicity);
-        answers.multiplicity = multiplicity.map(|m| m as u32);
-        answers
+        l.store(self.multiplicity, &mut multiplicity[at..]);
+        let to = answers.multiplicity[at..].iter_mut().take(L::COUNT);
+        for (to, m) in to.zip(&multiplicity[at..]) {
+            *to = *m as u32;
+        }
     }
 }

@@ -1,7 +1,5 @@
 //! Many packets: what f64 leaves undecided waits until a packet of it is full.
 
-use fearless_simd::Level;
-
 use super::{Answers, Certified, Packet, Tier, WIDTH, Wish, Workspace, lanes};
 
 /// Rays that wait, and where they come from.
@@ -29,7 +27,6 @@ impl Certified {
     /// The first hits of many packets, with the answers that [`Certified::first_hits`] has for each.
     pub fn first_hits_of_all(
         &self,
-        level: Level,
         packets: &[Packet],
         wish: Wish,
         workspace: &mut Workspace,
@@ -37,24 +34,23 @@ impl Certified {
         let mut answers = Vec::with_capacity(packets.len());
         let mut queue = Queue::default();
         for (index, packet) in packets.iter().enumerate() {
-            let first = self.in_lanes(level, packet, packet.active, false, workspace);
+            let first = self.in_lanes(packet, packet.active, false, workspace);
             let again = first.unfinished(packet, wish);
             answers.push(first);
             for lane in lanes(again) {
                 queue.push(packets, index, lane);
                 if queue.from.len() == WIDTH {
-                    self.empty(level, &mut queue, packets, &mut answers, wish, workspace);
+                    self.empty(&mut queue, packets, &mut answers, wish, workspace);
                 }
             }
         }
-        self.empty(level, &mut queue, packets, &mut answers, wish, workspace);
+        self.empty(&mut queue, packets, &mut answers, wish, workspace);
         answers
     }
 
     /// Decides what waits.
     fn empty(
         &self,
-        level: Level,
         queue: &mut Queue,
         packets: &[Packet],
         answers: &mut [Answers],
@@ -65,7 +61,7 @@ impl Certified {
         if from.is_empty() {
             return;
         }
-        let sharper = self.in_lanes(level, &packet, packet.active, true, workspace);
+        let sharper = self.in_lanes(&packet, packet.active, true, workspace);
         let decided = sharper.found | sharper.absent;
         for (at, (index, lane)) in from.into_iter().enumerate() {
             let to = &mut answers[index];
@@ -77,7 +73,7 @@ impl Certified {
             }
             if was_open && !is_decided && wish.exact {
                 to.tiers[lane] = Tier::Exact;
-                self.settle(level, &packets[index], lane, to, workspace);
+                self.settle(&packets[index], lane, to, workspace);
             }
         }
     }
