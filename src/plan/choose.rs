@@ -19,6 +19,16 @@ pub enum Precision {
     Double,
 }
 
+impl Precision {
+    /// Its name in scene files and pictures.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Single => "f32",
+            Self::Double => "f64",
+        }
+    }
+}
+
 /// Wavelengths per path where the scene does not say.
 pub const DEFAULT_WAVELENGTHS: u32 = 8;
 /// Share of a pixel's width that single precision may blur.

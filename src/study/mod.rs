@@ -25,12 +25,13 @@ pub mod reference;
 pub mod report;
 pub mod row;
 pub mod run;
-pub mod seeds;
 pub mod subject;
 pub mod summary;
 pub mod work;
 
 use std::path::PathBuf;
+
+use crate::render::seeds;
 
 /// Why a study cannot be carried out.
 #[derive(Debug, thiserror::Error)]
