@@ -19,11 +19,12 @@ pub mod record;
 pub mod reference;
 pub mod report;
 pub mod run;
-pub mod seeds;
 pub mod subject;
 pub mod work;
 
 use std::path::PathBuf;
+
+use crate::render::seeds;
 
 /// Why a study cannot be carried out.
 #[derive(Debug, thiserror::Error)]

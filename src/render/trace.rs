@@ -2,18 +2,19 @@
 //! of each pixel.
 
 use crate::math::instructions::Instructions;
-use crate::scene::{Implicit, Named, Object, Scene, Shape, Surface};
+use crate::scene::{Named, Object, Scene, Shape, Surface};
 use crate::shape::implicit::certified::{Tier, Workspace};
 use crate::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
-use crate::shape::{Placed, Query, ShapeKind, Start, Tally, nearest};
+use crate::shape::{Placed, Query, Ray, Start, Tally, nearest};
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::tile::Window;
 use crate::camera::centre_ray;
 
-/// All objects of a scene, placed.
-pub struct Target {
+/// All objects of a scene, placed for single rays.
+#[derive(Debug)]
+pub struct Tracer {
     names: Vec<String>,
     /// At equal t the lower one wins: 0 for opaque objects, 1 for glass.
     priorities: Vec<u8>,
@@ -24,6 +25,7 @@ pub struct Target {
 }
 
 /// The first thing a ray meets.
+#[derive(Debug, Clone)]
 pub struct FirstHit {
     /// Index of the object.
     pub object: usize,
@@ -38,6 +40,7 @@ pub struct FirstHit {
 }
 
 /// What a finder of implicit surfaces says besides t.
+#[derive(Debug, Clone)]
 pub struct Found {
     /// Its name.
     pub finder: &'static str,
@@ -50,6 +53,7 @@ pub struct Found {
 }
 
 /// What is known of the first thing a ray meets.
+#[derive(Debug, Clone)]
 pub enum First {
     /// It.
     Hit(FirstHit),
@@ -60,7 +64,7 @@ pub enum First {
 }
 
 /// Who has decided how many questions.
-#[derive(Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Decided {
     /// Rays.
     pub rays: u64,
@@ -95,13 +99,13 @@ pub struct Singular {
     pub name: String,
 }
 
-impl Target {
+impl Tracer {
     /// Places the objects of a scene.
     ///
     /// # Errors
     /// [`Singular`] for a matrix that has no inverse.
     pub fn new(scene: &Scene) -> Result<Self, Singular> {
-        let mut target = Self {
+        let mut tracer = Self {
             names: scene.objects.iter().map(|o| o.name.clone()).collect(),
             priorities: scene.objects.iter().map(|o| priority(scene, o)).collect(),
             certified: Vec::new(),
@@ -110,19 +114,19 @@ impl Target {
         };
         for (index, Named { name, value }) in scene.objects.iter().enumerate() {
             let singular = |_| Singular { name: name.clone() };
-            match certified_kind(&value.shape) {
-                Ok(kind) => {
-                    let placed = Placed::new(kind, &value.to_world).map_err(singular)?;
-                    target.certified.push(placed);
-                    target.certified_index.push(index);
+            match &value.shape {
+                Shape::Canonical(kind) => {
+                    let placed = Placed::new(*kind, &value.to_world).map_err(singular)?;
+                    tracer.certified.push(placed);
+                    tracer.certified_index.push(index);
                 }
-                Err(implicit) => {
+                Shape::Implicit(implicit) => {
                     let placed = PlacedImplicit::new(implicit, &value.to_world);
-                    target.implicit.push((index, placed.map_err(singular)?));
+                    tracer.implicit.push((index, placed.map_err(singular)?));
                 }
             }
         }
-        Ok(target)
+        Ok(tracer)
     }
 
     /// The name of an object.
@@ -130,7 +134,25 @@ impl Target {
         &self.names[object]
     }
 
-    /// The first hit of a ray.
+    /// The first surface that a ray meets at t ≥ 0.
+    ///
+    /// Hits on canonical shapes are decided exactly; those on implicit surfaces come with an
+    /// enclosure of t, and with the arithmetic that proved it.
+    pub fn first(&self, ray: Ray) -> First {
+        let query = Query {
+            ray,
+            t_min: 0.0,
+            t_max: f64::INFINITY,
+        };
+        self.first_hit(
+            &query,
+            &mut Workspace::new(Instructions::best()),
+            &mut Decided::default(),
+        )
+    }
+
+    /// The first hit within the limits of `query`; `decided` counts the answers, and one
+    /// `workspace` serves any number of them.
     pub fn first_hit(
         &self,
         query: &Query,
@@ -198,13 +220,13 @@ impl Target {
 /// too where it stays undecided.
 ///
 /// # Errors
-/// As [`Target::new`].
+/// As [`Tracer::new`].
 pub fn first_hits(
     scene: &Scene,
     window: Window,
     instructions: Instructions,
 ) -> Result<Vec<Option<FirstHit>>, Singular> {
-    let target = Target::new(scene)?;
+    let tracer = Tracer::new(scene)?;
     let row = |y: u32| (window.x0..window.x1).map(move |x| [x, y]);
     let workspace = || Workspace::new(instructions);
     let pixels: Vec<[u32; 2]> = (window.y0..window.y1).flat_map(row).collect();
@@ -216,7 +238,7 @@ pub fn first_hits(
                 t_min: 0.0,
                 t_max: f64::INFINITY,
             };
-            match target.first_hit(&query, workspace, &mut Decided::default()) {
+            match tracer.first_hit(&query, workspace, &mut Decided::default()) {
                 First::Hit(hit) => Some(hit),
                 First::Nothing | First::Undecided(_) => None,
             }
@@ -227,12 +249,4 @@ pub fn first_hits(
 fn priority(scene: &Scene, object: &Named<Object>) -> u8 {
     let material = scene.materials.get(object.value.material);
     u8::from(material.is_some_and(|m| matches!(m.value.surface, Surface::Glass(_))))
-}
-
-/// The canonical shape, or else the implicit surface.
-fn certified_kind(shape: &Shape) -> Result<ShapeKind, &Implicit> {
-    match shape {
-        Shape::Canonical(kind) => Ok(*kind),
-        Shape::Implicit(implicit) => Err(implicit),
-    }
 }
