@@ -215,10 +215,12 @@ impl<'a, T: Scalar> Builder<'a, T> {
                 self.resolver.push(index as u32, placed, priority);
             }
         }
-        if let Some(bounds) = super::extent::bounds(&object.shape, &to_world) {
-            self.bounded.push((index as u32, bounds));
-        } else {
-            self.unbounded.push(index as u32);
+        match object.shape.corners() {
+            Some([low, high]) => {
+                let bounds = Bounds::around_image(&to_world, low, high);
+                self.bounded.push((index as u32, bounds));
+            }
+            None => self.unbounded.push(index as u32),
         }
         Some(Placement { to_world, inverse })
     }

@@ -1,11 +1,16 @@
 //! The scene as single rays meet it, exactly: for given rays and for what is visible in the middle
 //! of each pixel.
 
+use std::borrow::Cow;
+
 use crate::math::instructions::Instructions;
 use crate::scene::{Named, Object, Scene, Shape, Surface};
+use crate::shape::hierarchy::Bounds;
 use crate::shape::implicit::certified::{Tier, Workspace};
 use crate::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
-use crate::shape::{Placed, Query, Ray, Start, Tally, nearest};
+use crate::shape::index::RayIndex;
+use crate::shape::list::nearest_of;
+use crate::shape::{Placed, Query, Ray, Start, Tally};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -18,11 +23,23 @@ pub struct Tracer {
     names: Vec<String>,
     /// At equal t the lower one wins: 0 for opaque objects, 1 for glass.
     priorities: Vec<u8>,
-    certified: Vec<Placed>,
-    /// Index in the scene of each of `certified`.
-    certified_index: Vec<usize>,
-    implicit: Vec<(usize, PlacedImplicit)>,
+    objects: Vec<Traced>,
+    /// All indices of objects, in order.
+    all: Vec<u32>,
+    /// Boxes over the objects, where there are many.
+    index: Option<RayIndex>,
 }
+
+/// An object, placed.
+#[derive(Debug)]
+enum Traced {
+    Canonical(Placed),
+    Implicit(Box<PlacedImplicit>),
+}
+
+/// Most objects that are asked one after the other. Exact questions cost more than boxes by far; the
+/// limit keeps boxes, which are f64 with a bound, away from scenes that are made to be difficult.
+const LARGEST_LIST: usize = 64;
 
 /// The first thing a ray meets.
 #[derive(Debug, Clone)]
@@ -105,28 +122,29 @@ impl Tracer {
     /// # Errors
     /// [`Singular`] for a matrix that has no inverse.
     pub fn new(scene: &Scene) -> Result<Self, Singular> {
-        let mut tracer = Self {
-            names: scene.objects.iter().map(|o| o.name.clone()).collect(),
-            priorities: scene.objects.iter().map(|o| priority(scene, o)).collect(),
-            certified: Vec::new(),
-            certified_index: Vec::new(),
-            implicit: Vec::new(),
-        };
-        for (index, Named { name, value }) in scene.objects.iter().enumerate() {
-            let singular = |_| Singular { name: name.clone() };
-            match &value.shape {
+        let place = |Named { name, value }: &Named<Object>| {
+            let traced = match &value.shape {
                 Shape::Canonical(kind) => {
-                    let placed = Placed::new(*kind, &value.to_world).map_err(singular)?;
-                    tracer.certified.push(placed);
-                    tracer.certified_index.push(index);
+                    Placed::new(*kind, &value.to_world).map(Traced::Canonical)
                 }
-                Shape::Implicit(implicit) => {
-                    let placed = PlacedImplicit::new(implicit, &value.to_world);
-                    tracer.implicit.push((index, placed.map_err(singular)?));
-                }
-            }
-        }
-        Ok(tracer)
+                Shape::Implicit(implicit) => PlacedImplicit::new(implicit, &value.to_world)
+                    .map(|placed| Traced::Implicit(Box::new(placed))),
+            };
+            traced.map_err(|_| Singular { name: name.clone() })
+        };
+        let bounds = |object: &Named<Object>| {
+            let [low, high] = object.value.shape.corners()?;
+            Some(Bounds::around_image(&object.value.to_world, low, high))
+        };
+        let objects = &scene.objects;
+        Ok(Self {
+            names: objects.iter().map(|o| o.name.clone()).collect(),
+            priorities: objects.iter().map(|o| priority(scene, o)).collect(),
+            objects: objects.iter().map(place).collect::<Result<_, _>>()?,
+            all: (0..objects.len() as u32).collect(),
+            index: (objects.len() > LARGEST_LIST)
+                .then(|| RayIndex::new(objects.iter().map(bounds))),
+        })
     }
 
     /// The name of an object.
@@ -159,16 +177,23 @@ impl Tracer {
         workspace: &mut Workspace,
         decided: &mut Decided,
     ) -> First {
-        let mut first = self.first_certified(query, &mut decided.ladder);
+        let candidates = match &self.index {
+            Some(index) => Cow::Owned(index.candidates(&query.ray, query.t_max)),
+            None => Cow::Borrowed(&self.all),
+        };
+        let mut first = self.first_certified(&candidates, query, &mut decided.ladder);
         let mut undecided = None;
-        for (object, implicit) in &self.implicit {
+        for &object in candidates.iter() {
+            let Traced::Implicit(implicit) = &self.objects[object as usize] else {
+                continue;
+            };
             let finder = implicit.finder().name();
             match implicit.first_hit(query, workspace, &mut decided.implicit) {
                 ImplicitAnswer::Absent => {}
                 ImplicitAnswer::Undecided => undecided = Some(finder),
                 ImplicitAnswer::Found(found) => {
                     let hit = FirstHit {
-                        object: *object,
+                        object: object as usize,
                         t: found.t,
                         point: found.point,
                         normal: found.normal,
@@ -195,12 +220,24 @@ impl Tracer {
         first.map_or(First::Nothing, First::Hit)
     }
 
-    fn first_certified(&self, query: &Query, tally: &mut Tally) -> Option<FirstHit> {
+    fn first_certified(
+        &self,
+        candidates: &[u32],
+        query: &Query,
+        tally: &mut Tally,
+    ) -> Option<FirstHit> {
+        let canonical = candidates.iter().filter_map(|&object| {
+            let object = object as usize;
+            match &self.objects[object] {
+                Traced::Canonical(placed) => Some((object, placed)),
+                Traced::Implicit(_) => None,
+            }
+        });
         let start = |_| Start::Free;
-        let priority = |index: usize| self.priorities[self.certified_index[index]];
-        let (index, hit) = nearest(&self.certified, query, start, priority, tally)?;
+        let priority = |object: usize| self.priorities[object];
+        let (object, hit) = nearest_of(canonical, query, start, priority, tally)?;
         Some(FirstHit {
-            object: self.certified_index[index],
+            object,
             t: hit.t,
             point: hit.point,
             normal: Some(hit.normal),

@@ -14,6 +14,7 @@ pub mod disk;
 pub mod flat;
 pub mod hierarchy;
 pub mod implicit;
+pub mod index;
 pub mod kind;
 pub mod ladder;
 pub mod lanes;

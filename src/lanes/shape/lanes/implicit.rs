@@ -95,7 +95,7 @@ impl<T: Scalar> LaneImplicit<T> {
             half: half.to_array().map(T::from_f64),
             steps: implicit.steps,
             inverse: Rows::from_f64(&inverse.rows),
-            bounds: OuterBox::new(&Bounds::of_image(to_world, inside[0], inside[1])),
+            bounds: OuterBox::new(&Bounds::around_image(to_world, inside[0], inside[1])),
             rounding: T::from_f64(16.0 * T::ROUNDOFF * largest_row),
             finder: Finder::new(implicit, to_world)?,
         })
