@@ -19,9 +19,8 @@ use etalon::shape::implicit::certified::{
 };
 use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitHit, ImplicitTally, PlacedImplicit};
 use etalon::shape::{Query, Ray};
-use etalon::study::finders::OracleShape;
 
-use crate::oracle_support::{IMPLICIT, Row, number, rows, shapes, vector};
+use crate::oracle_support::{IMPLICIT, OracleShape, Row, number, rows, shapes, vector};
 
 struct Surface {
     implicit: Implicit,

@@ -3,13 +3,14 @@
 use std::io;
 use std::path::PathBuf;
 
+use etalon::compare::CompareError;
 use etalon::film;
 use etalon::plan::PlanError;
 use etalon::render::bins::BinError;
-use etalon::render::target::Singular;
+use etalon::render::memory::TooLarge;
+use etalon::render::tile::Outside;
+use etalon::render::trace::Singular;
 use etalon::scene::SceneError;
-use etalon::study::compare::CompareError;
-use etalon::study::finders::OracleError;
 
 use super::trace::RayError;
 
@@ -33,25 +34,6 @@ pub enum CommandError {
         /// Why.
         reason: String,
     },
-    /// A result of the comparison of finders cannot be written.
-    #[error("error: cannot write {}: {reason}", path.display())]
-    Result {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        reason: String,
-    },
-    /// The rays or surfaces of the comparison of finders cannot be used.
-    #[error("error: {0}")]
-    Oracle(#[from] OracleError),
-    /// There is no such surface to paint.
-    #[error("error: --map: there is no surface \"{name}\"; there are {known}")]
-    Surface {
-        /// As it was asked for.
-        name: String,
-        /// All there are.
-        known: String,
-    },
     /// The scene cannot be carried out.
     #[error("error: {0}")]
     Plan(#[from] PlanError),
@@ -71,30 +53,11 @@ pub enum CommandError {
     #[error("error: --layers spectral: {0}")]
     Bins(#[from] BinError),
     /// The crop reaches out of the picture.
-    #[error(
-        "error: the crop {},{},{},{} is not inside the picture of {}x{} pixels",
-        from[0], from[1], to[0], to[1], size[0], size[1]
-    )]
-    Crop {
-        /// Its upper left corner.
-        from: [u32; 2],
-        /// The pixel after its lower right corner.
-        to: [u32; 2],
-        /// The picture.
-        size: [u32; 2],
-    },
+    #[error("error: the crop {0}")]
+    Crop(#[from] Outside),
     /// The picture does not fit into memory.
-    #[error(
-        "error: the picture needs about {} MiB of memory, and {} MiB are available: use a smaller \
-         --size, a --crop or fewer spectral bins",
-        needed >> 20, available >> 20
-    )]
-    Memory {
-        /// Bytes of the render.
-        needed: u64,
-        /// Bytes of the machine.
-        available: u64,
-    },
+    #[error("error: {0}: use a smaller --size, a --crop or fewer spectral bins")]
+    Memory(#[from] TooLarge),
     /// `--panel all` without panels.
     #[error("error: {} has no panels", .0.display())]
     NoPanels(PathBuf),

@@ -1,26 +1,24 @@
 //! `etalon render`: a scene to a picture.
 
-mod goal;
 mod job;
-mod layers;
-mod memory;
-mod picture;
 pub mod progress;
 mod report;
 
 use std::io::Write as _;
 use std::num::NonZeroUsize;
 use std::path::Path;
+use std::time::Instant;
 
-use etalon::film::{exr, png, whole};
+use etalon::film::{png, whole};
 use etalon::plan::explain;
-use etalon::render::{Instructions, Request, render, render_binned};
+use etalon::render::Instructions;
+use etalon::render::goal::{Goal, Target};
 use etalon::scene;
 use rayon::ThreadPool;
 
 use super::args::Render;
 use super::error::CommandError;
-use super::values::Panels;
+use super::values::{GoalTarget, Panels};
 use super::{Answer, tell};
 use job::Job;
 use progress::Watch;
@@ -28,14 +26,14 @@ use progress::Watch;
 /// Renders the scene as asked for.
 pub fn run(arguments: &Render) -> Result<Answer, CommandError> {
     let instructions = arguments.instructions;
-    let mut jobs = jobs(arguments)?;
+    let mut jobs = jobs(arguments, instructions)?;
     for job in &jobs {
         job.probe()?;
     }
     let threads = threads(arguments.threads)?;
     progress::listen();
     for job in &mut jobs {
-        if let Some(report) = threads.install(|| carry_out(arguments, job, instructions))? {
+        if let Some(report) = threads.install(|| carry_out(arguments, job))? {
             say(&report)?;
         }
         if progress::interrupted() {
@@ -46,7 +44,7 @@ pub fn run(arguments: &Render) -> Result<Answer, CommandError> {
 }
 
 /// One job a panel, each checked before any is begun.
-fn jobs(arguments: &Render) -> Result<Vec<Job>, CommandError> {
+fn jobs(arguments: &Render, instructions: Instructions) -> Result<Vec<Job>, CommandError> {
     let path = &arguments.scene.scene;
     let panels = match &arguments.panel {
         None => vec![None],
@@ -61,7 +59,7 @@ fn jobs(arguments: &Render) -> Result<Vec<Job>, CommandError> {
     };
     let jobs: Vec<Job> = panels
         .iter()
-        .map(|panel| Job::new(arguments, panel.as_deref()))
+        .map(|panel| Job::new(arguments, panel.as_deref(), instructions))
         .collect::<Result<_, _>>()?;
     job::distinct(&jobs)?;
     Ok(jobs)
@@ -79,49 +77,53 @@ pub fn threads(count: Option<NonZeroUsize>) -> Result<ThreadPool, CommandError> 
 
 /// Renders and writes one picture, on the threads of the current pool; the answer is the report,
 /// `None` where the user stopped before the picture was begun.
-fn carry_out(
-    arguments: &Render,
-    job: &mut Job,
-    instructions: Instructions,
-) -> Result<Option<String>, CommandError> {
-    if !arguments.quiet && !job.plan.left_out.is_empty() {
-        let names = job.plan.left_out.join(", ");
+fn carry_out(arguments: &Render, job: &mut Job) -> Result<Option<String>, CommandError> {
+    let plan = job.render.plan();
+    if !arguments.quiet && !plan.left_out.is_empty() {
+        let names = plan.left_out.join(", ");
         tell(&format!("note: light left out: {names}"));
     }
-    if let Some(doubt) = explain::doubt(&job.plan).filter(|_| !arguments.quiet) {
+    if let Some(doubt) = explain::doubt(plan).filter(|_| !arguments.quiet) {
         tell(&format!("note: single precision: {doubt}"));
     }
-    let goal = goal::wanted(arguments);
     let mut chosen = None;
-    if let Some(goal) = goal {
-        chosen = goal::aim(arguments, job, goal, instructions)?;
-        if chosen.is_none() {
+    if let Some(goal) = wanted(arguments) {
+        let start = Instant::now();
+        let mut watch = Watch::new(job, None, !arguments.quiet);
+        let aimed = job.render.aim(goal, &mut watch);
+        watch.finish();
+        let Some(aimed) = aimed? else {
             return Ok(None);
-        }
+        };
+        job.render.check_memory()?;
+        chosen = Some((goal, aimed, start.elapsed().as_secs_f64()));
     }
-    let request = Request {
-        window: job.window,
-        samples: job.scene.image.spp,
-        time: arguments.time.map(|time| time.0),
-        instructions,
-    };
-    let mut watch = Watch::new(job, request.time, !arguments.quiet);
-    let rendered = match &job.bins {
-        Some(grid) => render_binned(&job.plan, &request, grid, &mut watch),
-        None => render(&job.plan, &request, &mut watch),
-    };
+    let mut watch = Watch::new(job, job.render.time, !arguments.quiet);
+    let rendered = job.render.run_watched(&mut watch);
     watch.finish();
-    let outcome = report::Outcome {
-        rendered: &rendered,
-        interrupted: progress::interrupted(),
-        goal: goal.zip(chosen),
-    };
-    let picture = picture::assemble(arguments, job, &outcome, instructions)?;
-    exr::write(&job.output, &picture)?;
+    let interrupted = progress::interrupted();
+    let picture = job.render.picture(&rendered)?;
+    picture.write(&job.output)?;
     if let (Some(preview), Some(rgb)) = (&job.preview, picture.rgb()) {
         png::write_preview(preview, picture.width, picture.height, &rgb)?;
     }
-    Ok(Some(report::lines(arguments, job, &outcome)))
+    let outcome = report::Outcome {
+        rendered: &rendered,
+        interrupted,
+        chosen,
+    };
+    Ok(Some(report::lines(job, &outcome)))
+}
+
+/// The error that is asked for, if any is.
+fn wanted(arguments: &Render) -> Option<Goal> {
+    arguments.target_error.map(|error| Goal {
+        error,
+        target: match arguments.target {
+            GoalTarget::Image => Target::Image,
+            GoalTarget::Block => Target::Block,
+        },
+    })
 }
 
 /// Lines on stdout.

@@ -5,7 +5,7 @@ mod rays;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use etalon::render::target::{Decided, First, FirstHit, Found, Target};
+use etalon::render::trace::{Decided, First, FirstHit, Found, Tracer};
 use etalon::scene;
 use rayon::prelude::*;
 
@@ -28,7 +28,7 @@ const PIECES: usize = 256;
 /// Prints the first hit of each ray.
 pub fn run(arguments: &Trace) -> Result<Answer, CommandError> {
     let scene = scene::load(&arguments.scene.scene, &arguments.overrides())?;
-    let target = Target::new(&scene)?;
+    let tracer = Tracer::new(&scene)?;
     let mut lines = Lines::open(&arguments.rays)?;
     let table = lines.heading()?;
     if !arguments.quiet && !table.ignored.is_empty() {
@@ -46,7 +46,7 @@ pub fn run(arguments: &Trace) -> Result<Answer, CommandError> {
         let (batch, end) = read_batch(&mut lines);
         let pieces: Vec<Piece> = batch
             .par_chunks(PIECE)
-            .map(|lines| trace(&target, &table, lines))
+            .map(|lines| trace(&tracer, &table, lines))
             .collect();
         for piece in pieces {
             output
@@ -87,7 +87,7 @@ struct Piece {
     end: Result<(), RayError>,
 }
 
-fn trace(target: &Target, table: &Table, lines: &[Line]) -> Piece {
+fn trace(tracer: &Tracer, table: &Table, lines: &[Line]) -> Piece {
     let mut piece = Piece {
         text: String::new(),
         decided: Decided::default(),
@@ -102,10 +102,10 @@ fn trace(target: &Target, table: &Table, lines: &[Line]) -> Piece {
                 break;
             }
         };
-        let first = target.first_hit(&row.query, &mut workspace, &mut piece.decided);
+        let first = tracer.first_hit(&row.query, &mut workspace, &mut piece.decided);
         push_field(&mut piece.text, &row.id);
         match first {
-            First::Hit(hit) => push_hit(&mut piece.text, target, &hit),
+            First::Hit(hit) => push_hit(&mut piece.text, tracer, &hit),
             First::Nothing => piece.text.push_str(",0,,,,,,,,,,,,,\n"),
             First::Undecided(finder) => {
                 let _ = writeln!(piece.text, ",undecided,,,,,,,,,{finder},,,,");
@@ -115,7 +115,7 @@ fn trace(target: &Target, table: &Table, lines: &[Line]) -> Piece {
     piece
 }
 
-fn push_hit(text: &mut String, target: &Target, hit: &FirstHit) {
+fn push_hit(text: &mut String, tracer: &Tracer, hit: &FirstHit) {
     text.push_str(",1");
     push_numbers(text, &[hit.t]);
     push_numbers(text, &hit.point.to_array());
@@ -124,7 +124,7 @@ fn push_hit(text: &mut String, target: &Target, hit: &FirstHit) {
         None => text.push_str(",,,"),
     }
     text.push(',');
-    push_field(text, target.name(hit.object));
+    push_field(text, tracer.name(hit.object));
     match &hit.found {
         Some(found) => push_found(text, found),
         None => text.push_str(",,,,,"),

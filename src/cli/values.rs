@@ -7,6 +7,8 @@ use std::time::Duration;
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use etalon::render::Instructions;
+use etalon::render::layers;
+use etalon::render::tile::Window;
 
 /// What is wrong with a value.
 #[derive(Debug, thiserror::Error)]
@@ -70,12 +72,7 @@ impl fmt::Display for Size {
 
 /// A rectangle of pixels that is not empty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Crop {
-    /// First column and row.
-    pub from: [u32; 2],
-    /// The column and row after the last.
-    pub to: [u32; 2],
-}
+pub struct Crop(pub Window);
 
 impl FromStr for Crop {
     type Err = Expected;
@@ -83,10 +80,7 @@ impl FromStr for Crop {
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let expected = Expected("X0,Y0,X1,Y1 in pixels with X0 < X1 and Y0 < Y1");
         match numbers(text, ',') {
-            Some([x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Ok(Self {
-                from: [x0, y0],
-                to: [x1, y1],
-            }),
+            Some([x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Ok(Self(Window { x0, y0, x1, y1 })),
             _ => Err(expected),
         }
     }
@@ -126,14 +120,8 @@ impl FromStr for Seconds {
 /// A further layer of the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Layer {
-    /// Distance of the first visible surface from the camera.
-    Depth,
-    /// Its unit normal.
-    Normal,
-    /// Index of its object.
-    Object,
-    /// Index of its material.
-    Material,
+    /// About the first visible surface.
+    FirstHit(layers::Layer),
     /// Spectral radiance in bins.
     Spectral(Option<SpectralRange>),
 }
@@ -154,10 +142,10 @@ impl FromStr for Layer {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         match text {
-            "depth" => Ok(Self::Depth),
-            "normal" => Ok(Self::Normal),
-            "object" => Ok(Self::Object),
-            "material" => Ok(Self::Material),
+            "depth" => Ok(Self::FirstHit(layers::Layer::Depth)),
+            "normal" => Ok(Self::FirstHit(layers::Layer::Normal)),
+            "object" => Ok(Self::FirstHit(layers::Layer::Object)),
+            "material" => Ok(Self::FirstHit(layers::Layer::Material)),
             "spectral" => Ok(Self::Spectral(None)),
             _ => match text.strip_prefix("spectral:") {
                 Some(range) => range.parse().map(|range| Self::Spectral(Some(range))),

@@ -90,6 +90,24 @@ pub fn read(path: &Path) -> Result<Picture, Error> {
     from_image(image).map_err(content)
 }
 
+impl Picture {
+    /// Writes an OpenEXR file, whole or not at all.
+    ///
+    /// # Errors
+    /// As [`write()`].
+    pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        write(path.as_ref(), self)
+    }
+
+    /// Reads an OpenEXR file.
+    ///
+    /// # Errors
+    /// As [`read()`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
+        read(path.as_ref())
+    }
+}
+
 /// The picture as the `exr` crate wants it.
 fn to_image(picture: &Picture) -> Image<Layer<AnyChannels<FlatSamples>>> {
     let channels = picture.channels.iter().map(|channel| {

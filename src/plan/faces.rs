@@ -3,29 +3,8 @@
 
 use glam::{DMat3, DVec3};
 
-use super::extent::ROUNDED;
-use crate::math::affine::Affine;
-use crate::scene::Shape;
-
-/// A shape's parallel planes, as (canonical axis, places on it).
-fn faces(shape: &Shape) -> &'static [(usize, &'static [f64])] {
-    const ENDS: &[f64] = &[-1.0, 1.0];
-    match shape {
-        Shape::Cube => &[(0, ENDS), (1, ENDS), (2, ENDS)],
-        Shape::Cylinder => &[(2, ENDS)],
-        Shape::Disk | Shape::Rectangle | Shape::Plane => &[(2, &[0.0])],
-        Shape::Sphere | Shape::Implicit(_) => &[],
-    }
-}
-
-/// How many of its coordinates a shape's round wall is about.
-fn round(shape: &Shape) -> Option<usize> {
-    match shape {
-        Shape::Sphere => Some(3),
-        Shape::Cylinder => Some(2),
-        _ => None,
-    }
-}
+use crate::math::affine::{Affine, ROUNDED};
+use crate::shape::ShapeKind;
 
 fn linear(map: &Affine) -> DMat3 {
     let row = |i: usize| DVec3::from_slice(&map.rows[i][..3]);
@@ -34,7 +13,7 @@ fn linear(map: &Affine) -> DMat3 {
 
 /// The smallest positive distance between two parallel faces, or two round walls of one kind that share
 /// their axis or centre; infinite where there are none. Faces count wherever they lie in their planes.
-pub fn gap(a: (&Shape, &Affine), b: (&Shape, &Affine)) -> f64 {
+pub fn gap(a: (ShapeKind, &Affine), b: (ShapeKind, &Affine)) -> f64 {
     let inverse = linear(a.1).inverse();
     let place = |map: &Affine| DVec3::new(map.rows[0][3], map.rows[1][3], map.rows[2][3]);
     // b's canonical coordinates in a's.
@@ -47,9 +26,9 @@ pub fn gap(a: (&Shape, &Affine), b: (&Shape, &Affine)) -> f64 {
             smallest = smallest.min(local.abs() / inverse.row(axis).length());
         }
     };
-    for (axis, places) in faces(a.0) {
+    for (axis, places) in a.0.faces() {
         let row = between.row(*axis).to_array();
-        for (other, others) in faces(b.0) {
+        for (other, others) in b.0.faces() {
             let size: f64 = row.iter().map(|x| x.abs()).sum();
             if row[*other].abs() < size * (1.0 - ROUNDED) {
                 continue;
@@ -61,7 +40,7 @@ pub fn gap(a: (&Shape, &Affine), b: (&Shape, &Affine)) -> f64 {
             }
         }
     }
-    if let Some(count) = round(a.0).filter(|count| round(b.0) == Some(*count)) {
+    if let Some(count) = a.0.round().filter(|count| b.0.round() == Some(*count)) {
         let columns = [between.x_axis, between.y_axis, between.z_axis];
         let lengths = columns.map(|column| column.length());
         let alike = (0..count).all(|i| {

@@ -6,9 +6,10 @@
 
 use glam::DVec3;
 
-use super::extent::{about_camera, columns, translation};
+use super::extent::about_camera;
 use crate::math::affine::Affine;
 use crate::scene::{Light, Scene, Shape, Surface};
+use crate::shape::ShapeKind;
 
 /// Points relative to a plane: the range of their signed distances.
 type Range = [f64; 2];
@@ -59,7 +60,7 @@ pub fn occluders(scene: &Scene, lit: &[u32], roundoff: f64) -> Vec<u32> {
         });
         // What stands out by less than the rounding of a hit's coordinates (6 unit roundoffs of the
         // largest, as in `shape::lanes`) cannot be told from the plane.
-        let reach = translation(&placed[k]).abs().max_element();
+        let reach = placed[k].translation().abs().max_element();
         let blur = 6.0 * roundoff * (reach + height.abs());
         low < height - blur && high > height + blur
     };
@@ -71,27 +72,21 @@ pub fn occluders(scene: &Scene, lit: &[u32], roundoff: f64) -> Vec<u32> {
 
 /// Unit normal and height of the plane of a flat shape.
 fn plane(shape: &Shape, to_world: &Affine) -> Option<(DVec3, f64)> {
-    if !matches!(shape, Shape::Disk | Shape::Rectangle | Shape::Plane) {
+    if !shape.kind().is_some_and(ShapeKind::is_flat) {
         return None;
     }
-    let [a, b, _] = columns(to_world);
+    let [a, b, _] = to_world.columns();
     let normal = a.cross(b).try_normalize()?;
-    Some((normal, normal.dot(translation(to_world))))
+    Some((normal, normal.dot(to_world.translation())))
 }
 
 /// The range of normal · p over an object: of its image for the canonical shapes, of the image of
 /// its box for implicit surfaces.
 fn range(shape: &Shape, to_world: &Affine, normal: DVec3) -> Range {
-    let along = DVec3::from_array(columns(to_world).map(|axis| axis.dot(normal)));
-    let mut middle = normal.dot(translation(to_world));
+    let along = DVec3::from_array(to_world.columns().map(|axis| axis.dot(normal)));
+    let mut middle = normal.dot(to_world.translation());
     let half = match shape {
-        Shape::Sphere => along.length(),
-        Shape::Cube => along.abs().element_sum(),
-        Shape::Cylinder => along.truncate().length() + along.z.abs(),
-        Shape::Disk => along.truncate().length(),
-        Shape::Rectangle => along.truncate().abs().element_sum(),
-        Shape::Plane if along.truncate() == glam::DVec2::ZERO => 0.0,
-        Shape::Plane => f64::INFINITY,
+        Shape::Canonical(kind) => kind.half_range(along),
         Shape::Implicit(implicit) => {
             let [low, high] = implicit.inside;
             middle += along.dot((low + high) / 2.0);

@@ -1,4 +1,17 @@
-//! How much memory there is.
+//! How much memory there is, and a picture that takes more.
+
+/// A picture that does not fit into memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the picture needs about {} MiB of memory, and {} MiB are available",
+    needed >> 20, available >> 20
+)]
+pub struct TooLarge {
+    /// Bytes of the render.
+    pub needed: u64,
+    /// Bytes of the machine.
+    pub available: u64,
+}
 
 /// Assumed where the system does not tell how much there is: what any machine has.
 const UNKNOWN: u64 = 1 << 32;

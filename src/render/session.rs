@@ -7,13 +7,14 @@ use rayon::prelude::*;
 
 use super::bins::{BinGrid, Bins};
 use super::pass;
-use super::tile::{Tile, Window};
-use crate::film::pixels::Estimate;
+use super::tile::{Outside, Tile, Window};
+use crate::film::pixels;
 use crate::integrate::chunk;
 use crate::integrate::intersect::Rungs;
 use crate::math::instructions::Instructions;
 use crate::plan::Plan;
 use crate::spectrum::observer::xyz_to_linear_srgb;
+use crate::stats::Estimate;
 
 /// What to render besides what the plan says.
 #[derive(Debug, Clone, Copy)]
@@ -169,45 +170,38 @@ fn next_pass(rendered: &Rendered, request: &Request, spent: Duration) -> u32 {
     fitting.clamp(1, 7 * rendered.samples).min(left)
 }
 
-/// Mean luminance of a picture.
+/// Means over a region of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MeanLuminance {
-    /// Y.
-    pub value: f64,
-    /// Standard error; NaN with a single replicate.
-    pub standard_error: f64,
-}
-
-impl MeanLuminance {
-    /// Standard error over value, where it is known.
-    pub fn relative_error(&self) -> Option<f64> {
-        let ratio = self.standard_error / self.value;
-        ratio.is_finite().then_some(ratio)
-    }
+pub struct Mean {
+    /// Y: radiance weighted by the luminous efficiency ȳ, W·m⁻²·sr⁻¹·nm⁻¹; of light of constant
+    /// spectral radiance it is that radiance.
+    pub luminance: Estimate,
+    /// Linear R, G, B (Rec. ITU-R BT.709 primaries, white D65).
+    pub rgb: [Estimate; 3],
 }
 
 impl Rendered {
     /// Every pixel's estimate in linear Rec. 709, row by row.
-    pub fn rgb(&self) -> Vec<Estimate> {
+    pub fn rgb(&self) -> Vec<pixels::Estimate> {
         self.estimates(xyz_to_linear_srgb)
     }
 
     /// Every pixel's estimate in X, Y, Z, row by row.
-    pub fn xyz(&self) -> Vec<Estimate> {
+    pub fn xyz(&self) -> Vec<pixels::Estimate> {
         self.estimates(|xyz| xyz)
     }
 
     /// Every pixel's estimate of radiance in a bin, row by row; `None` where bins were not asked
     /// for.
-    pub fn bin(&self, bin: usize) -> Option<Vec<Estimate<1>>> {
+    pub fn bin(&self, bin: usize) -> Option<Vec<pixels::Estimate<1>>> {
         let wanted = self.tiles.iter().all(|tile| tile.bins.is_some());
         let estimate = |tile: &Tile, pixel: usize| {
             let bins = tile.bins.as_ref();
-            bins.map_or(Estimate::UNKNOWN, |bins| {
+            bins.map_or(pixels::Estimate::UNKNOWN, |bins| {
                 bins.estimate(pixel, bin, self.samples)
             })
         };
-        wanted.then(|| self.image(Estimate::UNKNOWN, estimate))
+        wanted.then(|| self.image(pixels::Estimate::UNKNOWN, estimate))
     }
 
     /// Luminance of every pixel, row by row, in each of its replicates.
@@ -226,8 +220,8 @@ impl Rendered {
         tile.map_or(0, |tile| tile.pixels.replicates(self.samples))
     }
 
-    fn estimates(&self, channels: impl Fn([f64; 3]) -> [f64; 3] + Copy) -> Vec<Estimate> {
-        self.image(Estimate::UNKNOWN, |tile, pixel| {
+    fn estimates(&self, channels: impl Fn([f64; 3]) -> [f64; 3] + Copy) -> Vec<pixels::Estimate> {
+        self.image(pixels::Estimate::UNKNOWN, |tile, pixel| {
             tile.pixels.estimate(pixel, self.samples, channels)
         })
     }
@@ -252,35 +246,79 @@ impl Rendered {
         }
     }
 
-    /// Mean luminance; pixels are scrambled independently, so their squared standard errors add.
-    pub fn mean_luminance(&self) -> MeanLuminance {
-        let pixels = self.window.pixels() as f64;
+    /// Means over the pixels of a region, which are scrambled independently of each other; standard
+    /// errors are NaN with a single replicate.
+    ///
+    /// # Errors
+    /// [`Outside`] where the region is empty or not all of it was rendered.
+    pub fn mean(&self, region: Window) -> Result<Mean, Outside> {
+        if !region.is_inside(&self.window) {
+            let size = [self.window.width(), self.window.height()];
+            return Err(Outside {
+                window: region,
+                size,
+            });
+        }
+        let (xyz, rgb) = (self.xyz(), self.rgb());
+        let row = |y: u32| {
+            let start = (y - self.window.y0) * self.window.width() - self.window.x0;
+            (region.x0..region.x1).map(move |x| (start + x) as usize)
+        };
+        let pixels: Vec<usize> = (region.y0..region.y1).flat_map(row).collect();
+        Ok(Mean {
+            luminance: self.mean_of(&xyz, &pixels, 1),
+            rgb: [0, 1, 2].map(|channel| self.mean_of(&rgb, &pixels, channel)),
+        })
+    }
+
+    /// The mean of a channel of an image of this render over some of its pixels.
+    pub(super) fn mean_of(
+        &self,
+        image: &[pixels::Estimate],
+        pixels: &[usize],
+        channel: usize,
+    ) -> Estimate {
+        let values: Vec<f64> = pixels.iter().map(|&i| image[i].mean[channel]).collect();
+        let errors = pixels.iter().map(|&i| image[i].standard_error[channel]);
+        let variances: Vec<f64> = errors.map(|e| e * e).collect();
+        Estimate::mean_of(&values, &variances, f64::from(self.replicates()) - 1.0)
+    }
+
+    /// Mean luminance; pixels are scrambled independently, so their squared standard errors add. The
+    /// standard error is NaN with a single replicate.
+    pub fn mean_luminance(&self) -> Estimate {
         // Tiles side by side, then their sums in order: the same bits on any number of threads.
-        let sums: Vec<[f64; 2]> = self
+        let sums: Vec<[f64; 3]> = self
             .tiles
             .par_iter()
             .map(|tile| self.luminance(tile))
             .collect();
-        let (mut sum, mut squares) = (0.0, 0.0);
-        for [own_sum, own_squares] in sums {
+        let [mut sum, mut variance, mut squares] = [0.0; 3];
+        for [own_sum, own_variance, own_squares] in sums {
             sum += own_sum;
+            variance += own_variance;
             squares += own_squares;
         }
-        MeanLuminance {
-            value: sum / pixels,
-            standard_error: squares.sqrt() / pixels,
-        }
+        let freedom = f64::from(self.replicates()) - 1.0;
+        Estimate::of_sums(self.window.pixels(), sum, [variance, squares], freedom)
     }
 
-    /// Σ Y and Σ (standard error of Y)² of a tile's pixels.
-    fn luminance(&self, tile: &Tile) -> [f64; 2] {
-        let (mut sum, mut squares) = (0.0, 0.0);
+    /// Σ Y, Σ v and Σ v² of a tile's pixels, where v is the squared standard error of Y.
+    fn luminance(&self, tile: &Tile) -> [f64; 3] {
+        let [mut sum, mut variance, mut squares] = [0.0; 3];
         for pixel in 0..tile.window.pixels() {
             let estimate = tile.pixels.estimate(pixel, self.samples, |xyz| xyz);
+            let own = estimate.standard_error[1] * estimate.standard_error[1];
             sum += estimate.mean[1];
-            squares += estimate.standard_error[1] * estimate.standard_error[1];
+            variance += own;
+            squares += own * own;
         }
-        [sum, squares]
+        [sum, variance, squares]
+    }
+
+    /// Camera paths a second.
+    pub fn samples_per_second(&self) -> f64 {
+        self.window.pixels() as f64 * f64::from(self.samples) / self.seconds
     }
 
     /// Share of the luminance that `max_depth` cuts off.

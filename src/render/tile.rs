@@ -1,5 +1,6 @@
 //! Tiles: the unit of work of one thread.
 
+use std::fmt;
 use std::ops::Range;
 
 use super::bins::Bins;
@@ -11,7 +12,7 @@ use crate::integrate::intersect::Rungs;
 use crate::integrate::model::Model;
 use crate::math::instructions::Instructions;
 use crate::math::lanes::Scalar;
-use crate::sample::sequence::Replicates;
+use crate::sample::replicates::Replicates;
 
 /// Edge of a tile in pixels.
 pub const EDGE: u32 = 16;
@@ -27,6 +28,23 @@ pub struct Window {
     pub x1: u32,
     /// Row after the last.
     pub y1: u32,
+}
+
+/// Pixels that are not all in the picture, or none at all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("{window} is not inside the picture of {}x{} pixels", size[0], size[1])]
+pub struct Outside {
+    /// What was asked for.
+    pub window: Window,
+    /// Width and height of the picture.
+    pub size: [u32; 2],
+}
+
+impl fmt::Display for Window {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { x0, y0, x1, y1 } = self;
+        write!(f, "{x0},{y0},{x1},{y1}")
+    }
 }
 
 impl Window {
@@ -53,6 +71,14 @@ impl Window {
     /// Number of pixels.
     pub fn pixels(&self) -> usize {
         self.width() as usize * self.height() as usize
+    }
+
+    /// Whether it has pixels, all of them in `whole`.
+    pub fn is_inside(&self, whole: &Self) -> bool {
+        let within =
+            |from: u32, to: u32, [least, most]: [u32; 2]| least <= from && from < to && to <= most;
+        within(self.x0, self.x1, [whole.x0, whole.x1])
+            && within(self.y0, self.y1, [whole.y0, whole.y1])
     }
 
     /// Cuts the window into tiles, row by row.

@@ -142,6 +142,7 @@ pub fn parse(
             source: Source {
                 path: path_for_messages.to_owned(),
                 text: text.to_owned(),
+                set: options.set.clone(),
             },
             panel: chosen.map(|panel| panel.name.clone()),
             camera: parts.look.camera,

@@ -20,13 +20,15 @@ mod tree;
 pub use error::{Diagnostic, SceneError};
 pub use file::{LARGEST_FILE, Overrides, load, panel_names, parse, read};
 
+use std::path::Path;
+
 use glam::DVec3;
 
 pub use crate::camera::{Camera, Lens, Projection};
 use crate::math::affine::Affine;
 pub use crate::sample::SamplerKind;
+pub use crate::shape::Shape;
 pub use crate::shape::implicit::{FinderChoice, Implicit};
-pub use crate::shape::{PLAIN, Shape};
 use crate::spectrum::Spectrum;
 use crate::spectrum::ior::RefractiveIndex;
 
@@ -53,14 +55,51 @@ pub struct Scene {
     pub truth: Option<Spectrum>,
 }
 
-/// The scene file's path and text (after `--set` and the panel were laid over it, the text is
-/// still the file's own), for messages and provenance.
+/// The scene file's path and its own text, and what was laid over it, for messages and provenance.
 #[derive(Debug, Clone)]
 pub struct Source {
-    /// Path as given on the command line.
+    /// The path as it was given.
     pub path: String,
     /// The whole text of the file.
     pub text: String,
+    /// What was laid over it besides the panel: dotted keys and TOML values, in this order.
+    pub set: Vec<(String, String)>,
+}
+
+impl Scene {
+    /// Reads the scene file at `path`.
+    ///
+    /// # Errors
+    /// [`SceneError`] for a file that cannot be read or holds no valid scene; it says where and why.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        load(path.as_ref(), &Overrides::default())
+    }
+
+    /// Reads a scene from the text of a scene file; the files it names are looked for from the
+    /// current directory.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn parse(text: &str) -> Result<Self, SceneError> {
+        parse("scene", text, Path::new(""), &Overrides::default())
+    }
+
+    /// Takes this many samples a pixel, as `image.spp` laid over the file would.
+    pub fn set_samples(&mut self, spp: u32) {
+        self.image.spp = spp;
+        self.lay("image.spp", spp.to_string());
+    }
+
+    /// Takes this seed, as `image.seed` laid over the file would.
+    pub fn set_seed(&mut self, seed: u64) {
+        self.image.seed = seed;
+        self.lay("image.seed", seed.to_string());
+    }
+
+    fn lay(&mut self, key: &str, value: String) {
+        self.source.set.retain(|(other, _)| other != key);
+        self.source.set.push((key.to_owned(), value));
+    }
 }
 
 /// A value with the name the file gives it.

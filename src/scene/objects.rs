@@ -9,13 +9,20 @@ use super::implicit::{self, DefaultFinder};
 use super::names::one_of;
 use super::transform;
 use super::tree::{Node, Value};
-use super::{Named, Object, PLAIN, Shape};
+use super::{Named, Object, Shape};
 use crate::math::affine::Affine;
+use crate::shape::ShapeKind;
 
 /// Names of all shapes.
-pub(super) const SHAPES: &[&str] = &[
-    PLAIN[0].0, PLAIN[1].0, PLAIN[2].0, PLAIN[3].0, PLAIN[4].0, PLAIN[5].0, "implicit",
-];
+pub(super) const SHAPES: &[&str] = &{
+    let mut names = ["implicit"; ShapeKind::NAMES.len() + 1];
+    let mut i = 0;
+    while i < ShapeKind::NAMES.len() {
+        names[i] = ShapeKind::NAMES[i];
+        i += 1;
+    }
+    names
+};
 
 const KEYS: &[&str] = &["name", "shape", "material", "transform"];
 
@@ -123,9 +130,12 @@ fn place(transform: Option<Affine>, sized: &Sized) -> Affine {
 fn shape(report: &Report, node: &Node, finder: &DefaultFinder) -> Option<Sized> {
     match &node.value {
         Value::Text(_) => {
-            let choices: Vec<(&str, &Shape)> = PLAIN.iter().map(|(n, s)| (*n, s)).collect();
-            let shape = report.choice("object.shape", node, &choices)?.clone();
-            Some(plain(shape, DVec3::ONE))
+            let choices: Vec<_> = ShapeKind::ALL
+                .iter()
+                .map(|kind| (kind.name(), *kind))
+                .collect();
+            let kind = report.choice("object.shape", node, &choices)?;
+            Some(plain(Shape::Canonical(kind), DVec3::ONE))
         }
         Value::Table(table) if table.get("implicit").is_some() => {
             let implicit = implicit::read(report, node, finder)?;
@@ -166,7 +176,7 @@ fn sized(report: &Report, kind: &str, node: &Node) -> Option<Sized> {
                 report.vector(what, node)
             });
             Some(Sized {
-                shape: Shape::Sphere,
+                shape: Shape::Canonical(ShapeKind::Sphere),
                 size: DVec3::splat(radius?),
                 center: center?,
             })
@@ -179,32 +189,38 @@ fn sized(report: &Report, kind: &str, node: &Node) -> Option<Sized> {
                 }
                 _ => DVec3::splat(length(&fields, "side", 2.0)?),
             };
-            Some(plain(Shape::Cube, extent / 2.0))
+            Some(plain(Shape::Canonical(ShapeKind::Cube), extent / 2.0))
         }
         "cylinder" => {
             let fields = open(&["radius", "height"])?;
             let radius = length(&fields, "radius", 1.0);
             let height = length(&fields, "height", 2.0);
             let (radius, half) = (radius?, height? / 2.0);
-            Some(plain(Shape::Cylinder, DVec3::new(radius, radius, half)))
+            Some(plain(
+                Shape::Canonical(ShapeKind::Cylinder),
+                DVec3::new(radius, radius, half),
+            ))
         }
         "disk" => {
             let fields = open(&["radius"])?;
             let radius = length(&fields, "radius", 1.0)?;
-            Some(plain(Shape::Disk, DVec3::new(radius, radius, 1.0)))
+            Some(plain(
+                Shape::Canonical(ShapeKind::Disk),
+                DVec3::new(radius, radius, 1.0),
+            ))
         }
         "rectangle" => {
             let fields = open(&["size"])?;
             let [width, height] =
                 fields.optional("size", [2.0, 2.0], |what, node| lengths(report, what, node))?;
             Some(plain(
-                Shape::Rectangle,
+                Shape::Canonical(ShapeKind::Rectangle),
                 DVec3::new(width / 2.0, height / 2.0, 1.0),
             ))
         }
         _ => {
             open(&[])?;
-            Some(plain(Shape::Plane, DVec3::ONE))
+            Some(plain(Shape::Canonical(ShapeKind::Plane), DVec3::ONE))
         }
     }
 }

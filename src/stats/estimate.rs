@@ -1,5 +1,7 @@
 //! Numbers with their standard errors.
 
+use std::fmt;
+
 use super::student;
 
 /// An estimate of a number.
@@ -34,17 +36,26 @@ impl Estimate {
     #[must_use]
     pub fn mean_of(values: &[f64], variances: &[f64], freedom: f64) -> Self {
         assert_eq!(values.len(), variances.len(), "values and variances");
-        let count = values.len() as f64;
-        let sum: f64 = variances.iter().sum();
-        let squares: f64 = variances.iter().map(|v| v * v).sum();
+        let variance = [
+            variances.iter().sum(),
+            variances.iter().map(|v| v * v).sum(),
+        ];
+        Self::of_sums(values.len(), values.iter().sum(), variance, freedom)
+    }
+
+    /// [`Estimate::mean_of`] `count` values from their sum, and from the sum of their variances and
+    /// that of the squares of these.
+    #[must_use]
+    pub fn of_sums(count: usize, sum: f64, [variance, squares]: [f64; 2], freedom: f64) -> Self {
+        let count = count as f64;
         let joined = if squares > 0.0 {
-            ((freedom + 2.0) * sum * sum / squares).clamp(freedom, freedom * count)
+            ((freedom + 2.0) * variance * variance / squares).clamp(freedom, freedom * count)
         } else {
             freedom * count
         };
         Self {
-            value: values.iter().sum::<f64>() / count,
-            standard_error: sum.sqrt() / count,
+            value: sum / count,
+            standard_error: variance.sqrt() / count,
             freedom: joined,
         }
     }
@@ -90,6 +101,13 @@ impl Estimate {
         }
     }
 
+    /// Standard error over value, where it is known.
+    #[must_use]
+    pub fn relative_error(&self) -> Option<f64> {
+        let ratio = self.standard_error / self.value;
+        ratio.is_finite().then_some(ratio)
+    }
+
     /// Standard errors between the estimate and a number; infinite where it differs and there is
     /// no error, 0 where it does not.
     #[must_use]
@@ -111,5 +129,12 @@ impl Estimate {
             return 1.0;
         }
         student::two_sided(distance / self.standard_error, self.freedom)
+    }
+}
+
+/// `value ± standard error`, the latter with two significant digits.
+impl fmt::Display for Estimate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ± {:.1e}", self.value, self.standard_error)
     }
 }

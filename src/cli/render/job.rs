@@ -5,27 +5,26 @@ use std::path::{Path, PathBuf};
 
 use etalon::plan::Plan;
 use etalon::render::bins::BinGrid;
-use etalon::render::tile::Window;
-use etalon::scene::{self, SamplerKind, Scene};
+use etalon::render::builder::{self, MOST_SAMPLES};
+use etalon::render::{Instructions, layers};
+use etalon::scene;
 
 use super::super::args::Render;
 use super::super::error::CommandError;
-use super::super::values::Crop;
-use super::{is_stream, layers, memory, probe};
+use super::super::values::{Layer, SpectralRange};
+use super::{is_stream, probe};
 
-/// Samples a pixel at most where only the time is limited: as many as the samplers' points.
-pub const MOST_SAMPLES: u32 = 1 << 24;
+/// The bins of plain `--layers spectral`: the visible range as most tables have it.
+const USUAL_BINS: SpectralRange = SpectralRange {
+    from: 400.0,
+    to: 700.0,
+    step: 10.0,
+};
 
 /// One picture to render.
 pub struct Job {
-    /// The scene.
-    pub scene: Scene,
-    /// What is done about it.
-    pub plan: Plan,
-    /// The pixels wanted.
-    pub window: Window,
-    /// The spectral bins wanted.
-    pub bins: Option<BinGrid>,
+    /// What it is made of.
+    pub render: builder::Render,
     /// The OpenEXR file.
     pub output: PathBuf,
     /// The preview beside it; none beside a device or pipe.
@@ -34,30 +33,36 @@ pub struct Job {
 
 impl Job {
     /// Reads and plans.
-    pub fn new(arguments: &Render, panel: Option<&str>) -> Result<Self, CommandError> {
+    pub fn new(
+        arguments: &Render,
+        panel: Option<&str>,
+        instructions: Instructions,
+    ) -> Result<Self, CommandError> {
         let mut scene = scene::load(&arguments.scene.scene, &arguments.overrides(panel))?;
         // With a wanted error pilots choose the samples, before the time counts.
         let open = arguments.time.is_some() && arguments.target_error.is_none();
         if open && !arguments.sets_spp() {
-            if scene.image.sampler == SamplerKind::Stratified {
+            if scene.image.sampler.needs_count() {
                 return Err(CommandError::TimeForStrata);
             }
-            scene.image.spp = MOST_SAMPLES;
+            scene.set_samples(MOST_SAMPLES);
         }
-        let window = window(scene.image.size, arguments.crop)?;
-        let bins = layers::bins(&arguments.layers)?;
         let plan = Plan::new(&scene, arguments.plan.is_full())?;
+        let mut render =
+            builder::Render::planned(scene, plan).with_layers(first(&arguments.layers));
+        if let Some(crop) = arguments.crop {
+            render = render.cropped(crop.0)?;
+        }
+        render.time = arguments.time.map(|time| time.0);
+        render.instructions = instructions;
+        render.spectral = bins(&arguments.layers)?;
+        render.check_memory()?;
         let (output, preview) = paths(arguments, panel)?;
-        let job = Self {
-            scene,
-            plan,
-            window,
-            bins,
+        Ok(Self {
+            render,
             output,
             preview,
-        };
-        memory::check(arguments, &job)?;
-        Ok(job)
+        })
     }
 
     /// Checks that both files can be written, before there is anything to lose.
@@ -67,22 +72,23 @@ impl Job {
     }
 }
 
-/// The whole image, or the crop if it is inside.
-fn window(size: [u32; 2], crop: Option<Crop>) -> Result<Window, CommandError> {
-    let [width, height] = size;
-    let Crop { from, to } = crop.unwrap_or(Crop {
-        from: [0, 0],
-        to: size,
-    });
-    if to[0] > width || to[1] > height {
-        return Err(CommandError::Crop { from, to, size });
-    }
-    Ok(Window {
-        x0: from[0],
-        y0: from[1],
-        x1: to[0],
-        y1: to[1],
+/// The layers about the first visible surface that are asked for.
+fn first(layers: &[Layer]) -> impl Iterator<Item = layers::Layer> {
+    layers.iter().filter_map(|layer| match layer {
+        Layer::FirstHit(layer) => Some(*layer),
+        Layer::Spectral(_) => None,
     })
+}
+
+/// The spectral bins asked for; where several are, the last counts.
+fn bins(layers: &[Layer]) -> Result<Option<BinGrid>, CommandError> {
+    let asked = layers.iter().rev().find_map(|layer| match layer {
+        Layer::Spectral(range) => Some(range.unwrap_or(USUAL_BINS)),
+        Layer::FirstHit(_) => None,
+    });
+    asked
+        .map(|range| Ok(BinGrid::new(range.from, range.to, range.step)?))
+        .transpose()
 }
 
 /// The OpenEXR file and the preview.

@@ -46,7 +46,7 @@ impl Watch {
         let shown = shown && std::io::stderr().is_terminal();
         Self {
             bar: shown.then(|| bar(job)),
-            pixels: job.window.pixels() as f64,
+            pixels: job.render.window().pixels() as f64,
             limit,
         }
     }

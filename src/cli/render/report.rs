@@ -4,9 +4,8 @@ use std::fmt::Write as _;
 
 use etalon::render::Rendered;
 use etalon::render::goal::{Chosen, Goal, Target, reached};
-use etalon::scene::SamplerKind;
+use etalon::scene::{Image, Scene};
 
-use super::super::args::Render;
 use super::super::quoted;
 use super::job::Job;
 
@@ -17,33 +16,26 @@ pub struct Outcome<'a> {
     /// Whether the user ended it.
     pub interrupted: bool,
     /// The wanted error, how its samples were chosen, and the seconds that took.
-    pub goal: Option<(Goal, (Chosen, f64))>,
-}
-
-impl Outcome<'_> {
-    /// Camera paths a second.
-    pub fn samples_per_second(&self) -> f64 {
-        let samples = self.rendered.window.pixels() as f64 * f64::from(self.rendered.samples);
-        samples / self.rendered.seconds
-    }
+    pub chosen: Option<(Goal, Chosen, f64)>,
 }
 
 /// The lines on stdout: what was measured.
-pub fn lines(arguments: &Render, job: &Job, outcome: &Outcome<'_>) -> String {
+pub fn lines(job: &Job, outcome: &Outcome<'_>) -> String {
     let rendered = outcome.rendered;
+    let image = &job.render.scene().image;
     let mut text = format!("{}: ", job.output.display());
-    if outcome.interrupted && rendered.samples < job.scene.image.spp {
+    if outcome.interrupted && rendered.samples < image.spp {
         text.push_str("interrupted after ");
     }
-    text.push_str(&count(job, rendered));
+    text.push_str(&count(image, rendered));
     let _ = write!(
         text,
         " in {:.2} s, {:.2} M samples/s; mean luminance {}",
         rendered.seconds,
-        outcome.samples_per_second() * 1e-6,
+        rendered.samples_per_second() * 1e-6,
         luminance(rendered)
     );
-    if job.scene.image.max_depth.is_some() {
+    if image.max_depth.is_some() {
         let share = rendered.cut_off();
         let _ = write!(
             text,
@@ -52,7 +44,7 @@ pub fn lines(arguments: &Render, job: &Job, outcome: &Outcome<'_>) -> String {
             percent(share.standard_error)
         );
     }
-    if let Some((goal, (chosen, seconds))) = &outcome.goal {
+    if let Some((goal, chosen, seconds)) = &outcome.chosen {
         let _ = write!(
             text,
             "; {} {} reached, {} asked for{}; pilots of {} spp in {seconds:.2} s chose the samples",
@@ -71,16 +63,16 @@ pub fn lines(arguments: &Render, job: &Job, outcome: &Outcome<'_>) -> String {
         );
     }
     let _ = write!(text, "; {} NaN", rendered.not_a_number);
-    if let Some(command) = replay(arguments, job, rendered) {
+    if let Some(command) = replay(job.render.scene(), rendered) {
         let _ = write!(text, "\nfirst NaN: {command}");
     }
     text
 }
 
 /// The samples reached. Strata are cut for a number of samples, and stay cut for it.
-fn count(job: &Job, rendered: &Rendered) -> String {
-    let (done, planned) = (rendered.samples, job.scene.image.spp);
-    if done < planned && job.scene.image.sampler == SamplerKind::Stratified {
+fn count(image: &Image, rendered: &Rendered) -> String {
+    let (done, planned) = (rendered.samples, image.spp);
+    if done < planned && image.sampler.needs_count() {
         format!("{done} spp (of strata for {planned})")
     } else {
         format!("{done} spp")
@@ -113,13 +105,13 @@ pub fn percent(share: f64) -> String {
 }
 
 /// The command that follows the first sample that was not a number.
-fn replay(arguments: &Render, job: &Job, rendered: &Rendered) -> Option<String> {
+fn replay(scene: &Scene, rendered: &Rendered) -> Option<String> {
     let first = rendered.first_not_a_number?;
-    let mut text = format!("etalon replay {}", quoted(&job.scene.source.path));
-    if let Some(panel) = &job.scene.panel {
+    let mut text = format!("etalon replay {}", quoted(&scene.source.path));
+    if let Some(panel) = &scene.panel {
         let _ = write!(text, " --panel {}", quoted(panel));
     }
-    for (key, value) in settings(arguments, job) {
+    for (key, value) in &scene.source.set {
         let _ = write!(text, " --set {}", quoted(&format!("{key}={value}")));
     }
     let _ = write!(
@@ -128,15 +120,4 @@ fn replay(arguments: &Render, job: &Job, rendered: &Rendered) -> Option<String> 
         first.x, first.y, first.sample
     );
     Some(text)
-}
-
-/// Everything laid over the scene file but the panel, the samples a pixel that were planned
-/// included.
-pub fn settings(arguments: &Render, job: &Job) -> Vec<(String, String)> {
-    let mut settings = arguments.overrides(None).set;
-    let planned = arguments.time.is_some() && !arguments.sets_spp();
-    if planned || arguments.target_error.is_some() {
-        settings.push(("image.spp".to_owned(), job.scene.image.spp.to_string()));
-    }
-    settings
 }

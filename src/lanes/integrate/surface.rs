@@ -261,11 +261,12 @@ fn others<L: Lanes>(
         #[inline(always)]
         |k, here| {
             let shape = &model.shapes[k as usize];
-            let surface = if shape.kind.is_some() {
-                shape.surface(l, p)
-            } else {
-                let reach = ray.extent + nearest.t;
-                implicit_surface(l, model, k, [p, ray.direction], reach, here)
+            let surface = match shape.kind {
+                Some(kind) => shape.surface(l, kind, p),
+                None => {
+                    let reach = ray.extent + nearest.t;
+                    implicit_surface(l, model, k, [p, ray.direction], reach, here)
+                }
             };
             out.point = Vec3::select(l, here, surface.point, out.point);
             out.normal = Vec3::select(l, here, surface.normal, out.normal);

@@ -34,6 +34,14 @@ impl Precision {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Single, Self::Double];
 
+    /// Its name in scene files and pictures.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Single => "f32",
+            Self::Double => "f64",
+        }
+    }
+
     /// Unit roundoff of round-to-nearest.
     pub fn roundoff(self) -> f64 {
         match self {

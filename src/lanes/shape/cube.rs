@@ -1,73 +1,196 @@
 //! The cube [-1, 1]³: three slabs.
 
-use std::cmp::Ordering;
+use glam::DVec3;
 
-use super::line::{Crossing, Fraction, LocalRay, Span};
+use super::kind::{Canonical, Emitter, Question};
+use super::lanes::part::{Part, PartKind};
+use super::lanes::{self, Enclosure, LaneRay, LaneShape};
+use super::line::{LocalRay, Span};
+use super::slab::{Along, Coordinate, LaneSlab, Slab, cut, lane_slab, reach, slab};
+use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
 use crate::math::number::Number;
+use crate::math::vec3::Vec3;
 
-/// Where the line enters and leaves the slab |coordinate| ≤ 1.
-pub enum Slab {
-    /// Crosses both faces.
-    Crossed(Span),
-    /// Parallel to the faces and between them (or in one).
-    Inside,
-    /// Parallel to the faces and outside.
-    Outside,
-}
+/// The surface of [-1, 1]³.
+pub struct Cube;
 
-/// The slab of this axis.
-pub fn slab<N: Number>(ray: &LocalRay<N>, axis: usize) -> Option<Slab> {
-    let upward = match ray.direction[axis].sign()? {
-        Ordering::Greater => true,
-        Ordering::Less => false,
-        Ordering::Equal => {
-            let start = Fraction::whole(N::of(0.0));
-            return Some(match ray.within(axis, &start)? {
-                true => Slab::Inside,
-                false => Slab::Outside,
-            });
+impl Canonical for Cube {
+    const NAME: &'static str = "cube";
+    const EMITTER: Emitter = Emitter::Cube;
+    const FACES: &'static [(usize, &'static [f64])] =
+        &[(0, &[-1.0, 1.0]), (1, &[-1.0, 1.0]), (2, &[-1.0, 1.0])];
+
+    fn corners() -> Option<[DVec3; 2]> {
+        Some([-DVec3::ONE, DVec3::ONE])
+    }
+
+    fn half_range(along: DVec3) -> f64 {
+        along.abs().element_sum()
+    }
+
+    /// The last entry must not come after the first exit.
+    fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
+        let mut span: Option<Span> = None;
+        for axis in 0..3 {
+            let next = match slab(ray, axis)? {
+                Slab::Crossed(next) => next,
+                Slab::Inside => continue,
+                Slab::Outside => return Some(None),
+            };
+            span = match span {
+                None => Some(next),
+                Some(current) => match cut(ray, current, &next)? {
+                    None => return Some(None),
+                    shorter => shorter,
+                },
+            };
         }
+        Some(span)
+    }
+
+    /// Three slabs (Kay and Kajiya 1986), each crossing with its bound; the cube is hit for certain
+    /// when the latest possible entry is before the earliest possible exit.
+    #[inline(always)]
+    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
+        let Question {
+            shape, ray, asked, ..
+        } = *question;
+        let slabs = slabs(l, shape, ray);
+        let [x, y, z] = &slabs;
+        if (asked & (x.parallel | y.parallel | z.parallel)).any() {
+            return with_parallels(l, shape, ray);
+        }
+        let nowhere = l.mask(false);
+        joined(l, &slabs, nowhere, nowhere)
+    }
+
+    fn parts<T: Scalar>(shape: &LaneShape<T>) -> Vec<Part<T>> {
+        let faces = |axis| shape.plane(axis, PartKind::Faces);
+        [0, 1, 2].map(faces).to_vec()
+    }
+
+    /// The axis of the face.
+    fn part(local: DVec3) -> u32 {
+        local.abs().max_position() as u32
+    }
+
+    /// The coordinate of the face made exact.
+    #[inline(always)]
+    fn snapped<L: Lanes>(l: L, local: Vec3<L::Real>) -> Vec3<L::Real> {
+        let (on_x, on_y) = faces::<L>(local);
+        let one = l.real(1.0);
+        Vec3::new(
+            l.select(on_x, one.copysign(local.x), local.x),
+            l.select(on_y, one.copysign(local.y), local.y),
+            l.select(on_x | on_y, local.z, one.copysign(local.z)),
+        )
+    }
+}
+
+/// The three slabs of the lines in local coordinates.
+#[inline(always)]
+fn slabs<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> [LaneSlab<L>; 3] {
+    let axis = inlined(
+        #[inline(always)]
+        |i| {
+            let local = shape.inverse.row(l, i, ray.origin, ray.direction);
+            lane_slab(l, &coordinate(l, shape, ray, i, local))
+        },
+    );
+    [axis(0), axis(1), axis(2)]
+}
+
+/// A local coordinate (origin, direction) with bounds of its errors.
+#[inline(always)]
+fn coordinate<L: Lanes>(
+    l: L,
+    shape: &LaneShape<L::Scalar>,
+    ray: &LaneRay<L>,
+    i: usize,
+    (origin, direction): (L::Real, L::Real),
+) -> Coordinate<L> {
+    Coordinate {
+        origin,
+        direction,
+        origin_error: shape.origin_error(l, ray, i),
+        direction_error: l.splat(shape.direction_error[i]),
+    }
+}
+
+/// The same where some line may run along a slab.
+#[cold]
+#[inline(never)]
+fn with_parallels<L: Lanes>(
+    l: L,
+    shape: &LaneShape<L::Scalar>,
+    ray: &LaneRay<L>,
+) -> lanes::Span<L> {
+    l.vectorize(
+        #[inline(always)]
+        || {
+            let mut slabs = slabs(l, shape, ray);
+            let o = shape.inverse.point(l, ray.origin);
+            let d = shape.inverse.vector(l, ray.direction);
+            let reach = reach(l, shape, ray, o, d);
+            let (mut lost, mut outside) = (l.mask(false), l.mask(false));
+            let components = [(o.x, d.x), (o.y, d.y), (o.z, d.z)];
+            for (i, (slab, local)) in slabs.iter_mut().zip(components).enumerate() {
+                let coordinate = coordinate(l, shape, ray, i, local);
+                let along: Along<L> = slab.settle(l, &coordinate, reach);
+                lost = lost | along.lost;
+                outside = outside | along.outside;
+            }
+            joined(l, &slabs, lost, outside)
+        },
+    )
+}
+
+#[inline(always)]
+fn joined<L: Lanes>(
+    l: L,
+    [x, y, z]: &[LaneSlab<L>; 3],
+    lost: L::Mask,
+    outside: L::Mask,
+) -> lanes::Span<L> {
+    let near = Enclosure {
+        low: x.near.low.max(y.near.low).max(z.near.low),
+        high: x.near.high.max(y.near.high).max(z.near.high),
     };
-    Some(Slab::Crossed(Span {
-        near: Crossing::face(axis, !upward, false),
-        far: Crossing::face(axis, upward, true),
-    }))
+    let far = Enclosure {
+        low: x.far.low.min(y.far.low).min(z.far.low),
+        high: x.far.high.min(y.far.high).min(z.far.high),
+    };
+    // One part a pair of faces.
+    let which = inlined(
+        #[inline(always)]
+        |y_later: L::Mask, z_later: L::Mask| {
+            let x_or_y = l.select_int(y_later, l.int(1), l.int(0));
+            l.select_int(z_later, l.int(2), x_or_y)
+        },
+    );
+    let parts = [
+        which(
+            y.near.high.gt(x.near.high),
+            z.near.high.gt(x.near.high.max(y.near.high)),
+        ),
+        which(
+            y.far.low.lt(x.far.low),
+            z.far.low.lt(x.far.low.min(y.far.low)),
+        ),
+    ];
+    lanes::Span {
+        near,
+        far,
+        hit: near.high.lt(far.low) & !lost & !outside,
+        miss: outside | (near.low.gt(far.high) & !lost),
+        parts,
+    }
 }
 
-/// The part of a span that lies between the faces of a slab, if any.
-pub fn cut<N: Number>(ray: &LocalRay<N>, mut span: Span, faces: &Span) -> Option<Option<Span>> {
-    let enters = faces.near.fraction(ray)?;
-    let leaves = faces.far.fraction(ray)?;
-    if span.near.compare(ray, &leaves)? == Ordering::Greater
-        || span.far.compare(ray, &enters)? == Ordering::Less
-    {
-        return Some(None);
-    }
-    if span.near.compare(ray, &enters)? == Ordering::Less {
-        span.near = faces.near;
-    }
-    if span.far.compare(ray, &leaves)? == Ordering::Greater {
-        span.far = faces.far;
-    }
-    Some(Some(span))
-}
-
-/// The last entry must not come after the first exit.
-pub fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
-    let mut span: Option<Span> = None;
-    for axis in 0..3 {
-        let next = match slab(ray, axis)? {
-            Slab::Crossed(next) => next,
-            Slab::Inside => continue,
-            Slab::Outside => return Some(None),
-        };
-        span = match span {
-            None => Some(next),
-            Some(current) => match cut(ray, current, &next)? {
-                None => return Some(None),
-                shorter => shorter,
-            },
-        };
-    }
-    Some(span)
+/// Which pair of faces a point is on: that of the largest coordinate.
+#[inline(always)]
+fn faces<L: Lanes>(local: Vec3<L::Real>) -> (L::Mask, L::Mask) {
+    let (ax, ay, az) = (local.x.abs(), local.y.abs(), local.z.abs());
+    let on_x = ax.ge(ay) & ax.ge(az);
+    (on_x, !on_x & ay.ge(az))
 }

@@ -2,14 +2,44 @@
 
 use std::cmp::Ordering;
 
-use super::line::{LocalRay, Span};
-use super::plane::flat_span;
+use glam::DVec2;
+
+use super::flat::Flat;
+use super::kind::Emitter;
+use super::line::{Fraction, LocalRay};
+use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::number::Number;
 
-/// The point on z = 0 must have x² + y² ≤ 1.
-pub fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
-    flat_span(ray, |crossing| {
-        let t = crossing.fraction(ray)?;
-        Some(ray.radial(2, &t).0.sign()? != Ordering::Greater)
-    })
+/// z = 0, x² + y² ≤ 1.
+pub struct Disk;
+
+impl Flat for Disk {
+    const NAME: &'static str = "disk";
+    const EMITTER: Emitter = Emitter::Disk;
+
+    fn half_range(along: DVec2) -> f64 {
+        along.length()
+    }
+
+    fn covers<N: Number>(ray: &LocalRay<N>, t: &Fraction<N>) -> Option<bool> {
+        Some(ray.radial(2, t).0.sign()? != Ordering::Greater)
+    }
+
+    /// The distance of (x, y) from its exact place is at most √2 of the margin, and 1½ pays for
+    /// the arithmetic of the squares as well.
+    #[inline(always)]
+    fn contains<L: Lanes>(
+        l: L,
+        x: L::Real,
+        y: L::Real,
+        z: L::Real,
+        margin: L::Real,
+    ) -> (L::Mask, L::Mask) {
+        let u = <L::Scalar as Scalar>::ROUNDOFF;
+        let squared = x.mul_add(x, y * y);
+        let margin = z.mul_add(l.real(4.0 * u), margin * l.real(1.5));
+        let (low, high) = (z - margin, z + margin);
+        let inside = low.gt(l.real(0.0)) & squared.lt(low * low);
+        (inside, squared.gt(high * high))
+    }
 }

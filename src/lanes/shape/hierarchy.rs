@@ -72,6 +72,25 @@ impl Bounds {
         }
     }
 
+    /// Around the same image, whatever rounding has done to it: centre and reach are each off by at
+    /// most 5 roundings of the largest magnitude on the way, their sum by two more; 16 pay for this
+    /// number's own.
+    pub fn around_image(to_world: &Affine, low: DVec3, high: DVec3) -> Self {
+        let image = Self::of_image(to_world, low, high);
+        let farthest = low.abs().max(high.abs());
+        let error = DVec3::from_array(to_world.rows.map(|row| {
+            let magnitude = row[0].abs() * farthest.x
+                + row[1].abs() * farthest.y
+                + row[2].abs() * farthest.z
+                + row[3].abs();
+            16.0 * f64::ROUNDOFF * magnitude
+        }));
+        Self {
+            low: image.low - error,
+            high: image.high + error,
+        }
+    }
+
     /// Half its surface, to which the number of random lines that meet it is proportional; 0 for
     /// nothing.
     pub fn half_area(&self) -> f64 {
@@ -389,8 +408,7 @@ fn met<L: Lanes>(l: L, near: L::Real, far: L::Real) -> (L::Real, L::Mask) {
     (near, near.le(far * l.real(1.0 + slack)))
 }
 
-/// The numbers of the type that enclose an interval, with room for the rounding of the bounds
-/// themselves (a matrix product: a few 2⁻⁵³).
+/// The numbers of the type that enclose an interval, with room to spare.
 fn outward<T: Scalar>(low: f64, high: f64) -> (T, T) {
     let slack = |x: f64| x.abs() * (2.0 * T::ROUNDOFF + 1e-14) + f64::MIN_POSITIVE;
     (

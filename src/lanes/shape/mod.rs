@@ -11,8 +11,11 @@
 pub mod cube;
 pub mod cylinder;
 pub mod disk;
+pub mod flat;
 pub mod hierarchy;
 pub mod implicit;
+pub mod index;
+pub mod kind;
 pub mod ladder;
 pub mod lanes;
 pub mod line;
@@ -22,130 +25,52 @@ pub mod plane;
 pub mod question;
 pub mod rectangle;
 pub mod resolve;
+pub mod slab;
 pub mod sphere;
 mod surd;
 mod value;
 
 use glam::DVec3;
 
-use crate::math::number::Number;
 use implicit::Implicit;
-use line::{LocalRay, Span};
+pub use kind::{Emitter, ShapeKind};
 
+pub use crate::math::ray::Ray;
 pub use list::{Query, nearest, occluded};
 pub use placed::{Placed, SingularMatrix};
 
-/// A shape in canonical object coordinates: sizes are part of the map that places it.
+/// A shape in its own coordinates: sizes are part of the map that places it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
-    /// x² + y² + z² = 1.
-    Sphere,
-    /// [-1, 1]³.
-    Cube,
-    /// x² + y² = 1 for |z| ≤ 1, with both caps.
-    Cylinder,
-    /// z = 0, x² + y² ≤ 1.
-    Disk,
-    /// z = 0, |x| ≤ 1, |y| ≤ 1.
-    Rectangle,
-    /// z = 0.
-    Plane,
+    /// A canonical shape.
+    Canonical(ShapeKind),
     /// f(x, y, z) = 0 inside a box.
     Implicit(Implicit),
 }
 
-/// The shapes that need nothing said of them, by name.
-pub const PLAIN: [(&str, Shape); 6] = [
-    ("sphere", Shape::Sphere),
-    ("cube", Shape::Cube),
-    ("cylinder", Shape::Cylinder),
-    ("disk", Shape::Disk),
-    ("rectangle", Shape::Rectangle),
-    ("plane", Shape::Plane),
-];
-
 impl Shape {
     /// Its name in scene files; of an implicit surface that has one, its own.
     pub fn name(&self) -> &'static str {
-        if let Self::Implicit(implicit) = self {
-            return implicit.name.unwrap_or("implicit");
-        }
-        let plain = PLAIN.iter().find(|(_, shape)| shape == self);
-        plain.map_or("", |(name, _)| name)
-    }
-}
-
-/// The canonical shapes, all closed sets: touching counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum ShapeKind {
-    /// x² + y² + z² = 1.
-    Sphere,
-    /// The surface of [-1, 1]³.
-    Cube,
-    /// x² + y² = 1 for |z| ≤ 1, with both caps.
-    Cylinder,
-    /// z = 0, x² + y² ≤ 1.
-    Disk,
-    /// z = 0, |x| ≤ 1, |y| ≤ 1.
-    Rectangle,
-    /// z = 0.
-    Plane,
-}
-
-impl ShapeKind {
-    /// The certified shape of a description; `None` for implicit surfaces.
-    pub fn of(shape: &Shape) -> Option<Self> {
-        Some(match shape {
-            Shape::Sphere => Self::Sphere,
-            Shape::Cube => Self::Cube,
-            Shape::Cylinder => Self::Cylinder,
-            Shape::Disk => Self::Disk,
-            Shape::Rectangle => Self::Rectangle,
-            Shape::Plane => Self::Plane,
-            Shape::Implicit(_) => return None,
-        })
-    }
-
-    /// Its name in scene files.
-    pub fn name(self) -> &'static str {
-        let own = PLAIN
-            .iter()
-            .find(|(_, shape)| Self::of(shape) == Some(self));
-        own.map_or("", |(name, _)| name)
-    }
-
-    /// Whether the shape is a piece of the plane z = 0, with +z as its front.
-    pub fn is_flat(self) -> bool {
-        matches!(self, Self::Disk | Self::Rectangle | Self::Plane)
-    }
-
-    /// Where the line enters and leaves the shape: `None` where this kind of number cannot tell.
-    pub fn span<N: Number>(self, ray: &LocalRay<N>) -> Option<Option<Span>> {
         match self {
-            Self::Sphere => sphere::span(ray),
-            Self::Cube => cube::span(ray),
-            Self::Cylinder => cylinder::span(ray),
-            Self::Disk => disk::span(ray),
-            Self::Rectangle => rectangle::span(ray),
-            Self::Plane => plane::span(ray),
+            Self::Canonical(kind) => kind.name(),
+            Self::Implicit(implicit) => implicit.name.unwrap_or("implicit"),
         }
     }
-}
 
-/// The line origin + t direction, with exactly these numbers. The direction need not be of unit
-/// length; t is in units of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ray {
-    /// Where t is 0, world coordinates.
-    pub origin: DVec3,
-    /// Not zero.
-    pub direction: DVec3,
-}
+    /// The canonical shape that it is; `None` for implicit surfaces.
+    pub fn kind(&self) -> Option<ShapeKind> {
+        match self {
+            Self::Canonical(kind) => Some(*kind),
+            Self::Implicit(_) => None,
+        }
+    }
 
-impl Ray {
-    /// Whether all numbers are finite and the direction is not zero: only such a ray hits.
-    pub fn is_valid(&self) -> bool {
-        self.origin.is_finite() && self.direction.is_finite() && self.direction != DVec3::ZERO
+    /// Opposite corners of a box around it; `None` where it has no end.
+    pub fn corners(&self) -> Option<[DVec3; 2]> {
+        match self {
+            Self::Canonical(kind) => kind.corners(),
+            Self::Implicit(implicit) => Some(implicit.inside),
+        }
     }
 }
 

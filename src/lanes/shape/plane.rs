@@ -1,35 +1,44 @@
-//! The plane z = 0, and how a line crosses it: the flat shapes cut their outline from this.
+//! The plane z = 0.
 
-use std::cmp::Ordering;
+use glam::{DVec2, DVec3};
 
-use super::line::{Crossing, Feature, LocalRay, Span};
+use super::flat::Flat;
+use super::kind::Emitter;
+use super::line::{Fraction, LocalRay};
+use crate::math::lanes::{Lanes, Real};
 use crate::math::number::Number;
 
-/// The one crossing with z = 0. A line in the plane sees it from its edge, where it has no extent:
-/// that touch is a miss.
-pub fn crossing<N: Number>(ray: &LocalRay<N>) -> Option<Option<Crossing>> {
-    let slope = ray.direction[2].sign()?;
-    Some((slope != Ordering::Equal).then_some(Crossing {
-        feature: Feature::Flat,
-        leaving: slope == Ordering::Greater,
-    }))
-}
+/// z = 0.
+pub struct Plane;
 
-/// The span of a flat shape with this outline test: its one crossing twice.
-pub fn flat_span<N: Number>(
-    ray: &LocalRay<N>,
-    inside: impl FnOnce(&Crossing) -> Option<bool>,
-) -> Option<Option<Span>> {
-    let Some(crossing) = crossing(ray)? else {
-        return Some(None);
-    };
-    Some(inside(&crossing)?.then_some(Span {
-        near: crossing,
-        far: crossing,
-    }))
-}
+impl Flat for Plane {
+    const NAME: &'static str = "plane";
+    const EMITTER: Emitter = Emitter::Unsampled;
 
-/// Every line that is not parallel to the plane meets it.
-pub fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
-    flat_span(ray, |_| Some(true))
+    fn corners() -> Option<[DVec3; 2]> {
+        None
+    }
+
+    fn half_range(along: DVec2) -> f64 {
+        if along == DVec2::ZERO {
+            0.0
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    fn covers<N: Number>(_ray: &LocalRay<N>, _t: &Fraction<N>) -> Option<bool> {
+        Some(true)
+    }
+
+    #[inline(always)]
+    fn contains<L: Lanes>(
+        l: L,
+        _x: L::Real,
+        _y: L::Real,
+        z: L::Real,
+        margin: L::Real,
+    ) -> (L::Mask, L::Mask) {
+        (z.gt(margin), l.mask(false))
+    }
 }

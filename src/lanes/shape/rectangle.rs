@@ -1,16 +1,40 @@
 //! The rectangle z = 0, |x| ≤ 1, |y| ≤ 1.
 
-use super::line::{LocalRay, Span};
-use super::plane::flat_span;
+use glam::DVec2;
+
+use super::flat::Flat;
+use super::kind::Emitter;
+use super::line::{Fraction, LocalRay};
+use crate::math::lanes::{Lanes, Real};
 use crate::math::number::Number;
 
-/// The point on z = 0 must have |x| ≤ 1 and |y| ≤ 1.
-pub fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
-    flat_span(ray, |crossing| {
-        let t = crossing.fraction(ray)?;
-        match (ray.within(0, &t), ray.within(1, &t)) {
+/// z = 0, |x| ≤ 1, |y| ≤ 1.
+pub struct Rectangle;
+
+impl Flat for Rectangle {
+    const NAME: &'static str = "rectangle";
+    const EMITTER: Emitter = Emitter::Rectangle;
+
+    fn half_range(along: DVec2) -> f64 {
+        along.abs().element_sum()
+    }
+
+    fn covers<N: Number>(ray: &LocalRay<N>, t: &Fraction<N>) -> Option<bool> {
+        match (ray.within(0, t), ray.within(1, t)) {
             (Some(false), _) | (_, Some(false)) => Some(false),
             (x, y) => x.and(y),
         }
-    })
+    }
+
+    #[inline(always)]
+    fn contains<L: Lanes>(
+        _l: L,
+        x: L::Real,
+        y: L::Real,
+        z: L::Real,
+        margin: L::Real,
+    ) -> (L::Mask, L::Mask) {
+        let depth = z - x.abs().max(y.abs());
+        (depth.gt(margin), depth.lt(-margin))
+    }
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::list::{Query, nearest_of, occluded_by};
-use super::{Hit, Placed, Ray, ShapeKind, Start, Tally};
+use super::{Hit, Placed, Ray, Start, Tally};
 
 /// The certified shapes of a scene, by their index among all objects.
 #[derive(Debug, Clone, Default)]
@@ -20,6 +20,17 @@ pub struct Departure {
     pub object: u32,
     /// Whether the ray goes into the object.
     pub inward: bool,
+}
+
+/// A ray that lanes could not decide, and the objects that may have to do with it.
+#[derive(Debug, Clone, Copy)]
+pub struct Doubt<'a> {
+    /// The objects to ask; `None` for all.
+    pub candidates: Option<&'a [u32]>,
+    /// The ray.
+    pub ray: Ray,
+    /// What its start knows.
+    pub departure: Departure,
 }
 
 /// What the ladder found.
@@ -55,16 +66,13 @@ impl Resolver {
         }
     }
 
-    /// The closest hit; among the candidates, if given.
-    pub fn nearest(
-        &self,
-        candidates: Option<&[u32]>,
-        origin: DVec3,
-        direction: DVec3,
-        departure: Departure,
-        tally: &mut Tally,
-    ) -> Option<Resolved> {
-        let ray = Ray { origin, direction };
+    /// The closest hit.
+    pub fn nearest(&self, doubt: &Doubt<'_>, tally: &mut Tally) -> Option<Resolved> {
+        let Doubt {
+            candidates,
+            ray,
+            departure,
+        } = *doubt;
         let query = Query {
             ray,
             t_min: 0.0,
@@ -84,7 +92,7 @@ impl Resolver {
             return Some(Resolved {
                 t: 0.0,
                 object: departure.object,
-                part: self.part(index, self.placed[index].inverse().point(origin)),
+                part: self.part(index, self.placed[index].inverse().point(ray.origin)),
             });
         }
         let (index, hit) = found?;
@@ -97,11 +105,7 @@ impl Resolver {
 
     /// Which part of a shape a point in canonical coordinates is on.
     fn part(&self, index: usize, local: DVec3) -> u32 {
-        if self.placed[index].kind() == ShapeKind::Cube {
-            local.abs().max_position() as u32
-        } else {
-            0
-        }
+        self.placed[index].kind().part(local)
     }
 
     /// The closed shape that a ray goes into from its own wall.
@@ -116,23 +120,13 @@ impl Resolver {
         self.placed[index].first_hit(ray, 0.0, Start::OnSurfaceInward, tally)
     }
 
-    /// Whether anything but `except` lies strictly between the origin and `t_max`; among the
-    /// candidates, if given.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a ray, its limits and its context"
-    )]
-    pub fn occluded(
-        &self,
-        candidates: Option<&[u32]>,
-        origin: DVec3,
-        direction: DVec3,
-        t_max: f64,
-        departure: Departure,
-        except: u32,
-        tally: &mut Tally,
-    ) -> bool {
-        let ray = Ray { origin, direction };
+    /// Whether anything but the object `except` lies strictly between the origin and `t_max`.
+    pub fn occluded(&self, doubt: &Doubt<'_>, t_max: f64, except: u32, tally: &mut Tally) -> bool {
+        let Doubt {
+            candidates,
+            ray,
+            departure,
+        } = *doubt;
         let query = Query {
             ray,
             t_min: 0.0,
@@ -163,8 +157,10 @@ impl Resolver {
             Start::Free
         } else if departure.inward {
             Start::OnSurfaceInward
-        } else {
+        } else if self.placed[index].kind().is_convex() {
             Start::Excluded
+        } else {
+            Start::Free
         }
     }
 }

@@ -9,11 +9,11 @@ use crate::math::instructions::Instructions;
 use crate::plan::{Plan, PlanError};
 use crate::render::bins::{BinError, BinGrid};
 use crate::render::session::{Rendered, Request, Unwatched, render, render_binned};
-use crate::render::target::{Singular, first_hits};
 use crate::render::tile::Window;
+use crate::render::trace::{Singular, first_hits};
 
+use crate::compare::{Channel, Side};
 use crate::scene::{Overrides, Scene, SceneError, load};
-use crate::study::compare::{Channel, Side};
 
 /// Independent scrambles per pixel: they cost little of the points' quality, and three degrees of
 /// freedom in each pixel are many in a block.

@@ -1,11 +1,11 @@
 //! Several balls: one ray asks them together, its lanes balls; or each lane's ray asks those that it
 //! comes near.
 
-use super::sphere::{Asked, Ball, Foot, ball_span};
 use super::{LaneRay, LaneShape, Span};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::lookup::SMALL;
 use crate::math::vec3::Vec3;
+use crate::shape::sphere::{Asked, Ball, Foot, ball_span};
 
 /// Most balls of a group.
 pub const MOST: usize = SMALL;

@@ -7,15 +7,13 @@
 //! constants). What follows from E and D is bounded shape by shape; a lane that a bound cannot
 //! decide is left to the certified ladder.
 
-mod cube;
-mod cylinder;
-mod flat;
-mod sphere;
-
 use crate::math::affine::Affine;
 use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::vec3::{Rows, Vec3};
 use crate::shape::ShapeKind;
+use crate::shape::flat;
+use crate::shape::sphere::Ball;
+use part::{Part, PartKind};
 
 pub mod balls;
 pub mod implicit;
@@ -82,6 +80,21 @@ pub struct Span<L: Lanes> {
     pub parts: [L::Int; 2],
 }
 
+impl<L: Lanes> Span<L> {
+    /// That of a line which certainly misses.
+    #[inline(always)]
+    pub fn missed(l: L) -> Self {
+        let nowhere = Enclosure::about(l.real(0.0), l.real(0.0));
+        Self {
+            near: nowhere,
+            far: nowhere,
+            hit: l.mask(false),
+            miss: l.mask(true),
+            parts: [l.int(0); 2],
+        }
+    }
+}
+
 /// A placed shape as lanes use it.
 #[derive(Debug, Clone, Copy)]
 pub struct LaneShape<T> {
@@ -98,9 +111,9 @@ pub struct LaneShape<T> {
     /// 6u (|bᵢ| + 1).
     pub offset_error: [T; 3],
     /// Bounds of a flat shape's plane test, see [`flat::margins`].
-    margins: [T; 2],
+    pub(in crate::shape) margins: [T; 2],
     /// A sphere that is one in the world too.
-    ball: Option<sphere::Ball<T>>,
+    pub(in crate::shape) ball: Option<Ball<T>>,
 }
 
 impl<T: Scalar> LaneShape<T> {
@@ -119,13 +132,18 @@ impl<T: Scalar> LaneShape<T> {
                 .map(|r| T::from_f64(unit * (r[0].abs() + r[1].abs() + r[2].abs()))),
             offset_error: inverse.rows.map(|r| T::from_f64(unit * (r[3].abs() + 1.0))),
             margins: flat::margins::<T>(inverse).map(T::from_f64),
-            ball: sphere::Ball::new(forward, reach),
+            ball: Ball::new(forward, reach),
         }
     }
 
     /// Eᵢ for a packet of rays.
     #[inline(always)]
-    fn origin_error<L: Lanes<Scalar = T>>(&self, l: L, ray: &LaneRay<L>, i: usize) -> L::Real {
+    pub(in crate::shape) fn origin_error<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        ray: &LaneRay<L>,
+        i: usize,
+    ) -> L::Real {
         ray.extent.mul_add(
             l.splat(self.direction_error[i]),
             l.splat(self.offset_error[i]),
@@ -134,7 +152,7 @@ impl<T: Scalar> LaneShape<T> {
 
     /// The largest Eᵢ and Dᵢ of the first `count` components.
     #[inline(always)]
-    fn largest_errors<L: Lanes<Scalar = T>>(
+    pub(in crate::shape) fn largest_errors<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         ray: &LaneRay<L>,
@@ -150,63 +168,25 @@ impl<T: Scalar> LaneShape<T> {
         (ray.extent.mul_add(direction, l.splat(offset)), direction)
     }
 
-    /// Where the lines of the lanes in `asked` meet the shape; what is said of others means nothing.
-    /// A shape that lies beyond `limit` as a whole may be called missed.
-    #[inline(always)]
-    pub fn span<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        ray: &LaneRay<L>,
-        asked: L::Mask,
-        limit: L::Real,
-    ) -> Span<L> {
-        match self.kind {
-            Some(ShapeKind::Sphere) => sphere::span(l, self, ray, asked, limit),
-            Some(ShapeKind::Cube) => cube::span(l, self, ray, asked),
-            Some(ShapeKind::Cylinder) => cylinder::span(l, self, ray, asked),
-            Some(ShapeKind::Disk) => flat::span::<L, flat::Disk>(l, self, ray),
-            Some(ShapeKind::Rectangle) => flat::span::<L, flat::Rectangle>(l, self, ray),
-            Some(ShapeKind::Plane) => flat::span::<L, flat::Plane>(l, self, ray),
-            None => Span {
-                near: Enclosure::about(l.real(0.0), l.real(0.0)),
-                far: Enclosure::about(l.real(0.0), l.real(0.0)),
-                hit: l.mask(false),
-                miss: l.mask(true),
-                parts: [l.int(0); 2],
-            },
-        }
-    }
-
     /// The ball that this shape is, if it is one.
-    pub fn ball(&self) -> Option<&sphere::Ball<T>> {
+    pub fn ball(&self) -> Option<&Ball<T>> {
         match self.kind {
             Some(ShapeKind::Sphere) => self.ball.as_ref(),
             _ => None,
         }
     }
 
-    /// What a hit near the world point p looks like, for shapes whose part is
-    /// [`part::PartKind::Other`].
-    #[inline(always)]
-    pub fn surface<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> LaneSurface<L> {
-        match self.kind {
-            Some(ShapeKind::Cylinder) => cylinder::surface(l, self, p),
-            _ => sphere::surface(l, self, p),
-        }
-    }
-
-    /// Canonical coordinates of a point on the surface: those that are constant on a face are
-    /// exact, so that textures do not flicker between cells there.
-    #[inline(always)]
-    pub fn local<L: Lanes<Scalar = T>>(&self, l: L, point: Vec3<L::Real>) -> Vec3<L::Real> {
-        let local = self.inverse.point(l, point);
-        match self.kind {
-            Some(ShapeKind::Disk | ShapeKind::Rectangle | ShapeKind::Plane) => {
-                Vec3::new(local.x, local.y, l.real(0.0))
-            }
-            Some(ShapeKind::Cube) => cube::snapped(l, local),
-            Some(ShapeKind::Cylinder) => cylinder::snapped(l, local),
-            Some(ShapeKind::Sphere) | None => local,
+    /// A part made of the planes of one canonical coordinate.
+    pub fn plane(&self, axis: usize, kind: PartKind) -> Part<T> {
+        let plane = &self.planes[axis];
+        Part {
+            kind,
+            vector: plane.normal,
+            level: plane.middle,
+            half: match kind {
+                PartKind::Faces => plane.half,
+                PartKind::Plane | PartKind::Ball | PartKind::Other => T::default(),
+            },
         }
     }
 }
@@ -240,93 +220,4 @@ impl<T: Scalar> Planes<T> {
             half: T::from_f64(1.0 / length),
         }
     }
-}
-
-/// Crossings of one slab |x| ≤ 1 of the local ray, with bounds.
-#[derive(Clone, Copy)]
-struct Slab<L: Lanes> {
-    near: Enclosure<L>,
-    far: Enclosure<L>,
-    /// Lanes that may run along the slab, for which the bounds mean nothing.
-    parallel: L::Mask,
-}
-
-/// Intersects the slab |o + t d| ≤ 1, where o is within `e` and d within `dd` of the exact values.
-#[inline(always)]
-fn slab<L: Lanes>(l: L, o: L::Real, d: L::Real, e: L::Real, dd: L::Real) -> Slab<L> {
-    let one = l.real(1.0);
-    let inverse = one / d;
-    let t1 = (-one - o) * inverse;
-    let t2 = (one - o) * inverse;
-    let largest = t1.abs().max(t2.abs());
-    // First order (e + |t| dd)/|d|, doubled for the rest while dd ≤ |d|/4; 5u for the arithmetic
-    // up to the rounded ends.
-    let error = (largest.mul_add(dd, e) * inverse.abs()).mul_add(
-        l.real(2.0),
-        largest * l.real(5.0 * <L::Scalar as Scalar>::ROUNDOFF),
-    );
-    Slab {
-        near: Enclosure::about(t1.min(t2), error),
-        far: Enclosure::about(t1.max(t2), error),
-        parallel: !d.abs().gt(dd * l.real(4.0)),
-    }
-}
-
-/// What position says of lines along a slab.
-struct Along<L: Lanes> {
-    /// Lanes for which it says nothing either.
-    lost: L::Mask,
-    /// The line runs outside of the slab.
-    outside: L::Mask,
-}
-
-impl<L: Lanes> Slab<L> {
-    /// Decides the parallel lanes by position, for all |t| ≤ `reach`, within which the line could hit
-    /// anything else of the shape; inside, the slab is no limit to them.
-    #[inline(always)]
-    fn settle(
-        &mut self,
-        l: L,
-        o: L::Real,
-        d: L::Real,
-        e: L::Real,
-        dd: L::Real,
-        reach: L::Real,
-    ) -> Along<L> {
-        let one = l.real(1.0);
-        let drift = (d.abs() + dd).mul_add(reach, e) * l.real(1.0 + 1e-6);
-        let inside = self.parallel & (o.abs() + drift).lt(one);
-        let outside = self.parallel & (o.abs() - drift).gt(one);
-        let far = l.real(f64::INFINITY);
-        for end in [&mut self.near.low, &mut self.near.high] {
-            *end = l.select(self.parallel, -far, *end);
-        }
-        for end in [&mut self.far.low, &mut self.far.high] {
-            *end = l.select(self.parallel, far, *end);
-        }
-        Along {
-            lost: self.parallel & !inside & !outside,
-            outside,
-        }
-    }
-}
-
-/// Farthest |t| at which the line can be inside the canonical box: (|o|₁ + E + 1)/max(|dᵢ| − Dᵢ),
-/// infinite where the direction could be zero for all that is known; 3 for 1 pays for rounding.
-#[inline(always)]
-fn reach<L: Lanes>(
-    l: L,
-    shape: &LaneShape<L::Scalar>,
-    ray: &LaneRay<L>,
-    o: Vec3<L::Real>,
-    d: Vec3<L::Real>,
-) -> L::Real {
-    let (e, _) = shape.largest_errors(l, ray, 3);
-    let sum = o.x.abs() + o.y.abs() + o.z.abs();
-    let [dx, dy, dz] = shape.direction_error.map(
-        #[inline(always)]
-        |error| l.splat(error),
-    );
-    let slowest = (d.x.abs() - dx).max(d.y.abs() - dy).max(d.z.abs() - dz);
-    (sum + (e + l.real(3.0))) / slowest.max(l.real(0.0))
 }

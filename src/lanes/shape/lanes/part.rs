@@ -1,9 +1,8 @@
 //! The parts of shapes: pieces of surface of which a few numbers say all.
 
-use super::{LaneShape, LaneSurface};
+use super::LaneSurface;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
-use crate::shape::ShapeKind;
 
 /// How the numbers of a part are to be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,40 +30,15 @@ pub struct Part<T> {
     pub half: T,
 }
 
-impl<T: Scalar> LaneShape<T> {
-    /// The parts, in the order in which [`super::Span`] numbers them.
-    pub fn parts(&self) -> Vec<Part<T>> {
+impl<T: Scalar> Part<T> {
+    /// A part of the kind [`PartKind::Other`].
+    pub fn other() -> Self {
         let zero = T::default();
-        let faces = |axis: usize, kind: PartKind| {
-            let plane = &self.planes[axis];
-            Part {
-                kind,
-                vector: plane.normal,
-                level: plane.middle,
-                half: if kind == PartKind::Faces {
-                    plane.half
-                } else {
-                    zero
-                },
-            }
-        };
-        match (self.kind, &self.ball) {
-            (Some(ShapeKind::Disk | ShapeKind::Rectangle | ShapeKind::Plane), _) => {
-                vec![faces(2, PartKind::Plane)]
-            }
-            (Some(ShapeKind::Cube), _) => [0, 1, 2].map(|i| faces(i, PartKind::Faces)).to_vec(),
-            (Some(ShapeKind::Sphere), Some(ball)) => vec![Part {
-                kind: PartKind::Ball,
-                vector: ball.centre,
-                level: ball.radius,
-                half: zero,
-            }],
-            (Some(ShapeKind::Sphere), None) | (Some(ShapeKind::Cylinder) | None, _) => vec![Part {
-                kind: PartKind::Other,
-                vector: [zero; 3],
-                level: zero,
-                half: zero,
-            }],
+        Self {
+            kind: PartKind::Other,
+            vector: [zero; 3],
+            level: zero,
+            half: zero,
         }
     }
 }

@@ -1,0 +1,249 @@
+//! What a canonical shape is and can, and the list of them.
+
+use glam::DVec3;
+
+use super::lanes::part::Part;
+use super::lanes::{self, LaneRay, LaneShape, LaneSurface};
+use super::line::{LocalRay, Span};
+use crate::math::lanes::{Lanes, Scalar};
+use crate::math::number::Number;
+use crate::math::vec3::Vec3;
+
+/// How points are chosen on a shape that emits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Emitter {
+    /// They are not: scattered rays alone find the light.
+    Unsampled,
+    /// As on the canonical disk.
+    Disk,
+    /// As on the canonical rectangle.
+    Rectangle,
+    /// As on the canonical sphere.
+    Sphere,
+    /// As on the canonical cube.
+    Cube,
+    /// As on the canonical cylinder.
+    Cylinder,
+}
+
+/// The lines that a shape is asked about in lanes.
+#[derive(Clone, Copy)]
+pub struct Question<'a, L: Lanes> {
+    /// The placed shape.
+    pub shape: &'a LaneShape<L::Scalar>,
+    /// The rays.
+    pub ray: &'a LaneRay<L>,
+    /// Lanes whose answer counts.
+    pub asked: L::Mask,
+    /// A shape that lies beyond this as a whole may be called missed.
+    pub limit: L::Real,
+}
+
+/// A closed set in canonical coordinates. Touching counts.
+pub trait Canonical {
+    /// Its name in scene files.
+    const NAME: &'static str;
+    /// Whether it is a piece of the plane z = 0, with +z as its front; else it is closed.
+    const FLAT: bool = false;
+    /// Whether a ray that leaves it outward never comes back, so that it need not be asked again.
+    const CONVEX: bool = true;
+    /// How a light of this shape is sampled.
+    const EMITTER: Emitter = Emitter::Unsampled;
+    /// Its parallel faces, as (canonical axis, places on it).
+    const FACES: &'static [(usize, &'static [f64])] = &[];
+    /// How many of its coordinates a round wall of radius 1 is about.
+    const ROUND: Option<usize> = None;
+
+    /// Opposite corners of its box; `None` where it has no end.
+    fn corners() -> Option<[DVec3; 2]>;
+
+    /// Half the range of a · p over the shape, for a = `along`; the middle of the range is 0.
+    fn half_range(along: DVec3) -> f64;
+
+    /// Where the line enters and leaves it: `None` where this kind of number cannot tell.
+    fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>>;
+
+    /// The same in lanes, with bounds; lanes that these cannot decide are taken to the ladder. What is
+    /// said of lanes that are not asked means nothing.
+    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L>;
+
+    /// The parts, in the order in which [`lanes::Span`] numbers them.
+    fn parts<T: Scalar>(_shape: &LaneShape<T>) -> Vec<Part<T>> {
+        vec![Part::other()]
+    }
+
+    /// Number of the part that a point in canonical coordinates is on.
+    fn part(_local: DVec3) -> u32 {
+        0
+    }
+
+    /// What a hit near the world point p looks like, for parts of the kind
+    /// [`PartKind::Other`](super::lanes::part::PartKind::Other).
+    #[inline(always)]
+    fn surface<L: Lanes>(_l: L, _shape: &LaneShape<L::Scalar>, p: Vec3<L::Real>) -> LaneSurface<L> {
+        LaneSurface {
+            point: p,
+            normal: p,
+        }
+    }
+
+    /// Canonical coordinates of a point on the surface, those that are constant on a face made
+    /// exact, so that textures do not flicker between cells there.
+    #[inline(always)]
+    fn snapped<L: Lanes>(_l: L, local: Vec3<L::Real>) -> Vec3<L::Real> {
+        local
+    }
+}
+
+macro_rules! shapes {
+    ($($kind:ident in $module:ident,)*) => {
+        /// The canonical shapes.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub enum ShapeKind {
+            $(
+                #[doc = concat!("See [`", stringify!($kind), "`](super::", stringify!($module), "::", stringify!($kind), ").")]
+                $kind,
+            )*
+        }
+
+        /// Evaluates an expression about the type of a kind.
+        macro_rules! of {
+            ($self:expr, $item:ident $arguments:tt) => {
+                match $self {
+                    $(ShapeKind::$kind => super::$module::$kind::$item $arguments,)*
+                }
+            };
+            ($self:expr, $item:ident) => {
+                match $self {
+                    $(ShapeKind::$kind => super::$module::$kind::$item,)*
+                }
+            };
+        }
+
+        impl ShapeKind {
+            /// All of them, in the order in which messages list them.
+            pub const ALL: &'static [Self] = &[$(Self::$kind,)*];
+
+            /// Their names in scene files.
+            pub const NAMES: &'static [&'static str] =
+                &[$(<super::$module::$kind as Canonical>::NAME,)*];
+        }
+    };
+}
+
+shapes! {
+    Sphere in sphere,
+    Cube in cube,
+    Cylinder in cylinder,
+    Disk in disk,
+    Rectangle in rectangle,
+    Plane in plane,
+}
+
+impl ShapeKind {
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        of!(self, NAME)
+    }
+
+    /// [`Canonical::FLAT`].
+    #[inline(always)]
+    pub fn is_flat(self) -> bool {
+        of!(self, FLAT)
+    }
+
+    /// [`Canonical::CONVEX`].
+    #[inline(always)]
+    pub fn is_convex(self) -> bool {
+        of!(self, CONVEX)
+    }
+
+    /// [`Canonical::EMITTER`].
+    pub fn emitter(self) -> Emitter {
+        of!(self, EMITTER)
+    }
+
+    /// [`Canonical::FACES`].
+    pub fn faces(self) -> &'static [(usize, &'static [f64])] {
+        of!(self, FACES)
+    }
+
+    /// [`Canonical::ROUND`].
+    pub fn round(self) -> Option<usize> {
+        of!(self, ROUND)
+    }
+
+    /// [`Canonical::corners`].
+    pub fn corners(self) -> Option<[DVec3; 2]> {
+        of!(self, corners())
+    }
+
+    /// [`Canonical::half_range`].
+    pub fn half_range(self, along: DVec3) -> f64 {
+        of!(self, half_range(along))
+    }
+
+    /// [`Canonical::span`].
+    pub fn span<N: Number>(self, ray: &LocalRay<N>) -> Option<Option<Span>> {
+        of!(self, span(ray))
+    }
+
+    /// [`Canonical::part`].
+    pub fn part(self, local: DVec3) -> u32 {
+        of!(self, part(local))
+    }
+}
+
+/// The methods of a placed shape that its kind answers. Implicit surfaces are intersected elsewhere:
+/// their lines miss, and their one part is [`Part::other`].
+impl<T: Scalar> LaneShape<T> {
+    /// [`Canonical::lane_span`].
+    #[inline(always)]
+    pub fn span<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        ray: &LaneRay<L>,
+        asked: L::Mask,
+        limit: L::Real,
+    ) -> lanes::Span<L> {
+        let Some(kind) = self.kind else {
+            return lanes::Span::missed(l);
+        };
+        let question = Question {
+            shape: self,
+            ray,
+            asked,
+            limit,
+        };
+        of!(kind, lane_span(l, &question))
+    }
+
+    /// [`Canonical::parts`].
+    pub fn parts(&self) -> Vec<Part<T>> {
+        match self.kind {
+            Some(kind) => of!(kind, parts(self)),
+            None => vec![Part::other()],
+        }
+    }
+
+    /// [`Canonical::surface`].
+    #[inline(always)]
+    pub fn surface<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        kind: ShapeKind,
+        p: Vec3<L::Real>,
+    ) -> LaneSurface<L> {
+        of!(kind, surface(l, self, p))
+    }
+
+    /// [`Canonical::snapped`] of a world point.
+    #[inline(always)]
+    pub fn local<L: Lanes<Scalar = T>>(&self, l: L, point: Vec3<L::Real>) -> Vec3<L::Real> {
+        let local = self.inverse.point(l, point);
+        match self.kind {
+            Some(kind) => of!(kind, snapped(l, local)),
+            None => local,
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! The slab |coordinate| ≤ 1 that cubes and cylinders are cut from, exactly and in lanes.
+
+use std::cmp::Ordering;
+
+use super::lanes::{Enclosure, LaneRay, LaneShape};
+use super::line::{Crossing, Fraction, LocalRay, Span};
+use crate::math::lanes::{Lanes, Real, Scalar};
+use crate::math::number::Number;
+use crate::math::vec3::Vec3;
+
+/// Where the line enters and leaves the slab |coordinate| ≤ 1.
+pub enum Slab {
+    /// Crosses both faces.
+    Crossed(Span),
+    /// Parallel to the faces and between them (or in one).
+    Inside,
+    /// Parallel to the faces and outside.
+    Outside,
+}
+
+/// The slab of this axis.
+pub fn slab<N: Number>(ray: &LocalRay<N>, axis: usize) -> Option<Slab> {
+    let upward = match ray.direction[axis].sign()? {
+        Ordering::Greater => true,
+        Ordering::Less => false,
+        Ordering::Equal => {
+            let start = Fraction::whole(N::of(0.0));
+            return Some(match ray.within(axis, &start)? {
+                true => Slab::Inside,
+                false => Slab::Outside,
+            });
+        }
+    };
+    Some(Slab::Crossed(Span {
+        near: Crossing::face(axis, !upward, false),
+        far: Crossing::face(axis, upward, true),
+    }))
+}
+
+/// The part of a span that lies between the faces of a slab, if any.
+pub fn cut<N: Number>(ray: &LocalRay<N>, mut span: Span, faces: &Span) -> Option<Option<Span>> {
+    let enters = faces.near.fraction(ray)?;
+    let leaves = faces.far.fraction(ray)?;
+    if span.near.compare(ray, &leaves)? == Ordering::Greater
+        || span.far.compare(ray, &enters)? == Ordering::Less
+    {
+        return Some(None);
+    }
+    if span.near.compare(ray, &enters)? == Ordering::Less {
+        span.near = faces.near;
+    }
+    if span.far.compare(ray, &leaves)? == Ordering::Greater {
+        span.far = faces.far;
+    }
+    Some(Some(span))
+}
+
+/// Crossings of one slab |x| ≤ 1 of the local ray, with bounds.
+#[derive(Clone, Copy)]
+pub struct LaneSlab<L: Lanes> {
+    /// Entry.
+    pub near: Enclosure<L>,
+    /// Exit.
+    pub far: Enclosure<L>,
+    /// Lanes that may run along the slab, for which the bounds mean nothing.
+    pub parallel: L::Mask,
+}
+
+/// One coordinate of the lines, o + t d, with bounds of the errors of both numbers.
+#[derive(Clone, Copy)]
+pub struct Coordinate<L: Lanes> {
+    /// o.
+    pub origin: L::Real,
+    /// d.
+    pub direction: L::Real,
+    /// What o is off by at most.
+    pub origin_error: L::Real,
+    /// What d is off by at most.
+    pub direction_error: L::Real,
+}
+
+/// Intersects the slab |o + t d| ≤ 1.
+#[inline(always)]
+pub fn lane_slab<L: Lanes>(l: L, coordinate: &Coordinate<L>) -> LaneSlab<L> {
+    let Coordinate {
+        origin: o,
+        direction: d,
+        origin_error: e,
+        direction_error: dd,
+    } = *coordinate;
+    let one = l.real(1.0);
+    let inverse = one / d;
+    let t1 = (-one - o) * inverse;
+    let t2 = (one - o) * inverse;
+    let largest = t1.abs().max(t2.abs());
+    // First order (e + |t| dd)/|d|, doubled for the rest while dd ≤ |d|/4; 5u for the arithmetic
+    // up to the rounded ends.
+    let error = (largest.mul_add(dd, e) * inverse.abs()).mul_add(
+        l.real(2.0),
+        largest * l.real(5.0 * <L::Scalar as Scalar>::ROUNDOFF),
+    );
+    LaneSlab {
+        near: Enclosure::about(t1.min(t2), error),
+        far: Enclosure::about(t1.max(t2), error),
+        parallel: !d.abs().gt(dd * l.real(4.0)),
+    }
+}
+
+/// What position says of lines along a slab.
+pub struct Along<L: Lanes> {
+    /// Lanes for which it says nothing either.
+    pub lost: L::Mask,
+    /// The line runs outside of the slab.
+    pub outside: L::Mask,
+}
+
+impl<L: Lanes> LaneSlab<L> {
+    /// Decides the parallel lanes by position, for all |t| ≤ `reach`, within which the line could hit
+    /// anything else of the shape; inside, the slab is no limit to them.
+    #[inline(always)]
+    pub fn settle(&mut self, l: L, coordinate: &Coordinate<L>, reach: L::Real) -> Along<L> {
+        let Coordinate {
+            origin: o,
+            direction: d,
+            origin_error: e,
+            direction_error: dd,
+        } = *coordinate;
+        let one = l.real(1.0);
+        let drift = (d.abs() + dd).mul_add(reach, e) * l.real(1.0 + 1e-6);
+        let inside = self.parallel & (o.abs() + drift).lt(one);
+        let outside = self.parallel & (o.abs() - drift).gt(one);
+        let far = l.real(f64::INFINITY);
+        for end in [&mut self.near.low, &mut self.near.high] {
+            *end = l.select(self.parallel, -far, *end);
+        }
+        for end in [&mut self.far.low, &mut self.far.high] {
+            *end = l.select(self.parallel, far, *end);
+        }
+        Along {
+            lost: self.parallel & !inside & !outside,
+            outside,
+        }
+    }
+}
+
+/// Farthest |t| at which the line can be inside the canonical box: (|o|₁ + E + 1)/max(|dᵢ| − Dᵢ),
+/// infinite where the direction could be zero for all that is known; 3 for 1 pays for rounding.
+#[inline(always)]
+pub fn reach<L: Lanes>(
+    l: L,
+    shape: &LaneShape<L::Scalar>,
+    ray: &LaneRay<L>,
+    o: Vec3<L::Real>,
+    d: Vec3<L::Real>,
+) -> L::Real {
+    let (e, _) = shape.largest_errors(l, ray, 3);
+    let sum = o.x.abs() + o.y.abs() + o.z.abs();
+    let [dx, dy, dz] = shape.direction_error.map(
+        #[inline(always)]
+        |error| l.splat(error),
+    );
+    let slowest = (d.x.abs() - dx).max(d.y.abs() - dy).max(d.z.abs() - dz);
+    (sum + (e + l.real(3.0))) / slowest.max(l.real(0.0))
+}

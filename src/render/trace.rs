@@ -1,0 +1,289 @@
+//! The scene as single rays meet it, exactly: for given rays and for what is visible in the middle
+//! of each pixel.
+
+use std::borrow::Cow;
+
+use crate::math::instructions::Instructions;
+use crate::scene::{Named, Object, Scene, Shape, Surface};
+use crate::shape::hierarchy::Bounds;
+use crate::shape::implicit::certified::{Tier, Workspace};
+use crate::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
+use crate::shape::index::RayIndex;
+use crate::shape::list::nearest_of;
+use crate::shape::{Placed, Query, Ray, Start, Tally};
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::tile::Window;
+use crate::camera::centre_ray;
+
+/// All objects of a scene, placed for single rays.
+#[derive(Debug)]
+pub struct Tracer {
+    names: Vec<String>,
+    /// At equal t the lower one wins: 0 for opaque objects, 1 for glass.
+    priorities: Vec<u8>,
+    objects: Vec<Traced>,
+    /// All indices of objects, in order.
+    all: Vec<u32>,
+    /// Boxes over the objects, where there are many.
+    index: Option<RayIndex>,
+}
+
+/// An object, placed.
+#[derive(Debug)]
+enum Traced {
+    Canonical(Placed),
+    Implicit(Box<PlacedImplicit>),
+}
+
+/// Most objects that are asked one after the other. Exact questions cost more than boxes by far; the
+/// limit keeps boxes, which are f64 with a bound, away from scenes that are made to be difficult.
+const LARGEST_LIST: usize = 64;
+
+/// The first thing a ray meets.
+#[derive(Debug, Clone)]
+pub struct FirstHit {
+    /// Index of the object.
+    pub object: usize,
+    /// Where on the ray, in units of its direction.
+    pub t: f64,
+    /// World coordinates.
+    pub point: DVec3,
+    /// Unit outward normal in the world, where there is one.
+    pub normal: Option<DVec3>,
+    /// How an implicit surface was found.
+    pub found: Option<Found>,
+}
+
+/// What a finder of implicit surfaces says besides t.
+#[derive(Debug, Clone)]
+pub struct Found {
+    /// Its name.
+    pub finder: &'static str,
+    /// Bounds of t.
+    pub enclosure: [f64; 2],
+    /// How many times t is a root, where that is known.
+    pub multiplicity: Option<u32>,
+    /// What decided; `None` where nothing is proved.
+    pub tier: Option<Tier>,
+}
+
+/// What is known of the first thing a ray meets.
+#[derive(Debug, Clone)]
+pub enum First {
+    /// It.
+    Hit(FirstHit),
+    /// There is none.
+    Nothing,
+    /// The finder of that name could not tell.
+    Undecided(&'static str),
+}
+
+/// Who has decided how many questions.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Decided {
+    /// Rays.
+    pub rays: u64,
+    /// Rays that hit something.
+    pub hits: u64,
+    /// Certified shapes, by rung.
+    pub ladder: Tally,
+    /// Rays that stay undecided.
+    pub undecided: u64,
+    /// Implicit surfaces, by arithmetic.
+    pub implicit: ImplicitTally,
+}
+
+impl Decided {
+    /// The counts of both together.
+    pub fn joined(self, other: Self) -> Self {
+        Self {
+            rays: self.rays + other.rays,
+            hits: self.hits + other.hits,
+            ladder: self.ladder.joined(other.ladder),
+            undecided: self.undecided + other.undecided,
+            implicit: self.implicit.joined(other.implicit),
+        }
+    }
+}
+
+/// An object's matrix has no inverse.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the object \"{name}\" has a transform that is not invertible")]
+pub struct Singular {
+    /// The object.
+    pub name: String,
+}
+
+impl Tracer {
+    /// Places the objects of a scene.
+    ///
+    /// # Errors
+    /// [`Singular`] for a matrix that has no inverse.
+    pub fn new(scene: &Scene) -> Result<Self, Singular> {
+        let place = |Named { name, value }: &Named<Object>| {
+            let traced = match &value.shape {
+                Shape::Canonical(kind) => {
+                    Placed::new(*kind, &value.to_world).map(Traced::Canonical)
+                }
+                Shape::Implicit(implicit) => PlacedImplicit::new(implicit, &value.to_world)
+                    .map(|placed| Traced::Implicit(Box::new(placed))),
+            };
+            traced.map_err(|_| Singular { name: name.clone() })
+        };
+        let bounds = |object: &Named<Object>| {
+            let [low, high] = object.value.shape.corners()?;
+            Some(Bounds::around_image(&object.value.to_world, low, high))
+        };
+        let objects = &scene.objects;
+        Ok(Self {
+            names: objects.iter().map(|o| o.name.clone()).collect(),
+            priorities: objects.iter().map(|o| priority(scene, o)).collect(),
+            objects: objects.iter().map(place).collect::<Result<_, _>>()?,
+            all: (0..objects.len() as u32).collect(),
+            index: (objects.len() > LARGEST_LIST)
+                .then(|| RayIndex::new(objects.iter().map(bounds))),
+        })
+    }
+
+    /// The name of an object.
+    pub fn name(&self, object: usize) -> &str {
+        &self.names[object]
+    }
+
+    /// The first surface that a ray meets at t ≥ 0.
+    ///
+    /// Hits on canonical shapes are decided exactly; those on implicit surfaces come with an
+    /// enclosure of t, and with the arithmetic that proved it.
+    pub fn first(&self, ray: Ray) -> First {
+        let query = Query {
+            ray,
+            t_min: 0.0,
+            t_max: f64::INFINITY,
+        };
+        self.first_hit(
+            &query,
+            &mut Workspace::new(Instructions::best()),
+            &mut Decided::default(),
+        )
+    }
+
+    /// The first hit within the limits of `query`; `decided` counts the answers, and one
+    /// `workspace` serves any number of them.
+    pub fn first_hit(
+        &self,
+        query: &Query,
+        workspace: &mut Workspace,
+        decided: &mut Decided,
+    ) -> First {
+        let candidates = match &self.index {
+            Some(index) => Cow::Owned(index.candidates(&query.ray, query.t_max)),
+            None => Cow::Borrowed(&self.all),
+        };
+        let mut first = self.first_certified(&candidates, query, &mut decided.ladder);
+        let mut undecided = None;
+        for &object in candidates.iter() {
+            let Traced::Implicit(implicit) = &self.objects[object as usize] else {
+                continue;
+            };
+            let finder = implicit.finder().name();
+            match implicit.first_hit(query, workspace, &mut decided.implicit) {
+                ImplicitAnswer::Absent => {}
+                ImplicitAnswer::Undecided => undecided = Some(finder),
+                ImplicitAnswer::Found(found) => {
+                    let hit = FirstHit {
+                        object: object as usize,
+                        t: found.t,
+                        point: found.point,
+                        normal: found.normal,
+                        found: Some(Found {
+                            finder,
+                            enclosure: found.enclosure,
+                            multiplicity: found.multiplicity,
+                            tier: found.tier,
+                        }),
+                    };
+                    if first.as_ref().is_none_or(|first| self.beats(&hit, first)) {
+                        first = Some(hit);
+                    }
+                }
+            }
+        }
+        decided.rays += 1;
+        // What could not be told may lie before what was found.
+        if let Some(finder) = undecided {
+            decided.undecided += 1;
+            return First::Undecided(finder);
+        }
+        decided.hits += u64::from(first.is_some());
+        first.map_or(First::Nothing, First::Hit)
+    }
+
+    fn first_certified(
+        &self,
+        candidates: &[u32],
+        query: &Query,
+        tally: &mut Tally,
+    ) -> Option<FirstHit> {
+        let canonical = candidates.iter().filter_map(|&object| {
+            let object = object as usize;
+            match &self.objects[object] {
+                Traced::Canonical(placed) => Some((object, placed)),
+                Traced::Implicit(_) => None,
+            }
+        });
+        let start = |_| Start::Free;
+        let priority = |object: usize| self.priorities[object];
+        let (object, hit) = nearest_of(canonical, query, start, priority, tally)?;
+        Some(FirstHit {
+            object,
+            t: hit.t,
+            point: hit.point,
+            normal: Some(hit.normal),
+            found: None,
+        })
+    }
+
+    /// By t, then opaque before glass, then by index. The t of implicit surfaces is known to f64
+    /// at best, so equality of these numbers is all the equality there is.
+    fn beats(&self, hit: &FirstHit, other: &FirstHit) -> bool {
+        let rank = |hit: &FirstHit| (self.priorities[hit.object], hit.object);
+        hit.t < other.t || (hit.t == other.t && rank(hit) < rank(other))
+    }
+}
+
+/// The first surface on the ray through the centre of each pixel of a window, row by row; `None`
+/// too where it stays undecided.
+///
+/// # Errors
+/// As [`Tracer::new`].
+pub fn first_hits(
+    scene: &Scene,
+    window: Window,
+    instructions: Instructions,
+) -> Result<Vec<Option<FirstHit>>, Singular> {
+    let tracer = Tracer::new(scene)?;
+    let row = |y: u32| (window.x0..window.x1).map(move |x| [x, y]);
+    let workspace = || Workspace::new(instructions);
+    let pixels: Vec<[u32; 2]> = (window.y0..window.y1).flat_map(row).collect();
+    Ok(pixels
+        .into_par_iter()
+        .map_init(workspace, |workspace, pixel| {
+            let query = Query {
+                ray: centre_ray(&scene.camera, scene.image.size, pixel),
+                t_min: 0.0,
+                t_max: f64::INFINITY,
+            };
+            match tracer.first_hit(&query, workspace, &mut Decided::default()) {
+                First::Hit(hit) => Some(hit),
+                First::Nothing | First::Undecided(_) => None,
+            }
+        })
+        .collect())
+}
+
+fn priority(scene: &Scene, object: &Named<Object>) -> u8 {
+    let material = scene.materials.get(object.value.material);
+    u8::from(material.is_some_and(|m| matches!(m.value.surface, Surface::Glass(_))))
+}
