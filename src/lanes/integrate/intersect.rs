@@ -263,9 +263,9 @@ impl<L: Lanes> Search<L> {
         self.fields.t.min(self.best.high)
     }
 
-    /// Asks one object, for the lanes in `asked`.
+    /// Asks one object, for the lanes in `asked`; by a call where it is `SINGLE`.
     #[inline(always)]
-    pub fn ask(
+    pub fn ask<const SINGLE: bool>(
         &mut self,
         l: L,
         model: &Model<L::Scalar>,
@@ -276,7 +276,12 @@ impl<L: Lanes> Search<L> {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
         let asked = Asked::new(l, l.int(k), kind, rays.leaving, asked);
-        let span = shape.span(l, rays.ray, asked.all, self.best.high);
+        let (ray, limit) = (rays.ray, self.best.high);
+        let span = if SINGLE {
+            shape.span_by_call(l, ray, asked.all, limit)
+        } else {
+            shape.span(l, ray, asked.all, limit)
+        };
         if !asked.met(&span).any() {
             return;
         }
@@ -311,7 +316,7 @@ impl<L: Lanes> Search<L> {
             #[inline(always)]
             || match model.implicit(k) {
                 Some(implicit) => self.fields.ask(l, model, (k, implicit), rays, asked),
-                None => self.ask(l, model, k, rays, asked),
+                None => self.ask::<true>(l, model, k, rays, asked),
             },
         );
     }
@@ -406,15 +411,25 @@ impl<'a, L: Lanes> Blocks<'a, L> {
         }
     }
 
-    /// Asks one object, for the lanes in `asked`.
+    /// Asks one object, for the lanes in `asked`; by a call where it is `SINGLE`.
     #[inline(always)]
-    pub fn ask(&mut self, l: L, model: &Model<L::Scalar>, k: u32, asked: L::Mask) {
+    pub fn ask<const SINGLE: bool>(
+        &mut self,
+        l: L,
+        model: &Model<L::Scalar>,
+        k: u32,
+        asked: L::Mask,
+    ) {
         let Shadow { ray, limit, except } = self.shadow;
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
         let asked = asked & !except.same(l.int(k));
         let asked = Asked::new(l, l.int(k), kind, self.rays.leaving, asked);
-        let span = shape.span(l, ray, asked.all, *limit);
+        let span = if SINGLE {
+            shape.span_by_call(l, ray, asked.all, *limit)
+        } else {
+            shape.span(l, ray, asked.all, *limit)
+        };
         if !asked.met(&span).any() {
             return;
         }
@@ -456,7 +471,7 @@ impl<'a, L: Lanes> Blocks<'a, L> {
             #[inline(always)]
             || match model.implicit(k) {
                 Some(implicit) => self.ask_field(l, (k, implicit), asked),
-                None => self.ask(l, model, k, asked),
+                None => self.ask::<true>(l, model, k, asked),
             },
         );
     }

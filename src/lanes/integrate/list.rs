@@ -68,7 +68,7 @@ pub(super) fn search<L: Lanes>(
     let Rays { ray, leaving } = rays;
     let mut search = Search::new(l);
     for &k in &list.alone {
-        search.ask(l, model, k, rays, active);
+        search.ask::<false>(l, model, k, rays, active);
     }
     for Group { balls, parts } in &list.groups {
         let mut places = balls.near(l, ray, [outward(l, leaving)], search.best.high);
@@ -98,7 +98,7 @@ pub(super) fn blocks<L: Lanes>(
 ) {
     let (shadow, leaving) = (blocks.shadow, blocks.rays.leaving);
     for &k in &list.alone {
-        blocks.ask(l, model, k, active);
+        blocks.ask::<false>(l, model, k, active);
     }
     for Group { balls, .. } in &list.groups {
         let left_out = [outward(l, leaving), shadow.except];

@@ -128,7 +128,7 @@ impl<N: Lanes> Lone<N> {
                 let shape = &model.shapes[k as usize];
                 let kind = shape.kind?;
                 let asked = Asked::new(n, n.int(k), kind, &self.leaving, n.mask(true));
-                let span = shape.span(n, &self.ray, asked.all, n.splat(limit));
+                let span = shape.span_by_call(n, &self.ray, asked.all, n.splat(limit));
                 if !asked.met(&span).any() {
                     return None;
                 }

@@ -11,8 +11,11 @@
 use crate::math::lanes::{Lanes, Mask, Real};
 use crate::math::words::Word;
 
-/// Degrees that the solver is compiled for; others are raised to the next.
+/// Degrees that are solved; others are raised to the next.
 pub const DEGREES: [usize; 6] = [2, 4, 6, 8, 12, 24];
+
+/// Most coefficients.
+pub const MOST: usize = 25;
 
 /// Splits before a lane gives up. A split at a minimum decides unless the minimum is within the
 /// bound of zero; a polynomial of degree n has n/2 of them, and each is found in a few steps.
@@ -23,10 +26,12 @@ const MOST_SPLITS: usize = 32;
 /// Steps of Newton's method, which doubles the digits in each, or halvings where it does not.
 const MOST_STEPS: usize = 24;
 
-/// Polynomials of degree M − 1.
+/// Polynomials of degree below M.
 pub struct Problem<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize> {
     /// Bernstein coefficients.
     pub coefficients: [W; M],
+    /// How many there are: one more than the degree.
+    pub count: usize,
     /// Bound of the coefficients' error.
     pub error: L::Real,
     /// Polynomials whose value at 0 is a root already known, up to `start_error`: it does not
@@ -71,14 +76,10 @@ struct Signs<L: Lanes> {
     touching: L::Mask,
 }
 
-/// C(n, i), exactly: it stays below 2²².
-const fn binomial(n: usize, i: usize) -> f64 {
-    let (mut c, mut j) = (1, 0);
-    while j < i {
-        c = c * (n - j) as u64 / (j + 1) as u64;
-        j += 1;
-    }
-    c as f64
+/// C(n, i + 1) from C(n, i), exactly: they stay below 2²², and the products below 2²⁷.
+#[inline(always)]
+fn next_binomial(n: usize, i: usize, c: u32) -> u32 {
+    c * (n - i) as u32 / (i + 1) as u32
 }
 
 /// Error that one split adds to coefficients below 1. A level rounds a difference and a product
@@ -118,16 +119,12 @@ fn signs<L: Lanes<Scalar = f64>, W: Word<L>>(
 /// Where the first minimum of the control polygon that may be below zero is, by the derivative's
 /// polygon; the middle where there is none.
 #[inline(always)]
-fn minimum<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
-    l: L,
-    c: &[W; M],
-    error: L::Real,
-) -> L::Real {
+fn minimum<L: Lanes<Scalar = f64>, W: Word<L>>(l: L, c: &[W], error: L::Real) -> L::Real {
     let zero = l.real(0.0);
     let mut open = l.mask(true);
     let (mut place, mut fall, mut turn) = (l.real(0.5), zero, l.real(1.0));
-    let share = 1.0 / (M - 2) as f64;
-    for i in 1..M - 1 {
+    let share = 1.0 / (c.len() - 2) as f64;
+    for i in 1..c.len() - 1 {
         let (before, after) = (c[i].minus(c[i - 1]).head(), c[i + 1].minus(c[i]).head());
         let lowest = before.lt(zero) & after.ge(zero) & c[i].head().le(error) & open;
         place = l.select(lowest, l.real((i - 1) as f64 * share), place);
@@ -140,35 +137,27 @@ fn minimum<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
     at.max(l.real(1.0 / 64.0)).min(l.real(63.0 / 64.0))
 }
 
-/// Splits at a point: the part before, and the part after.
+/// Splits `after` at a point: what comes first goes into `before`.
 #[inline(always)]
-fn split<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
-    rest: &[W; M],
-    at: L::Real,
-) -> [[W; M]; 2] {
-    let (mut before, mut after) = (*rest, *rest);
-    #[expect(
-        clippy::needless_range_loop,
-        reason = "iterators over lanes are not always inlined"
-    )]
-    for level in 1..M {
-        for i in 0..M - level {
+#[expect(
+    clippy::needless_range_loop,
+    reason = "iterators over lanes are not always inlined"
+)]
+fn split<L: Lanes<Scalar = f64>, W: Word<L>>(after: &mut [W], before: &mut [W], at: L::Real) {
+    before[0] = after[0];
+    let count = after.len();
+    for level in 1..count {
+        for i in 0..count - level {
             after[i] = after[i + 1].minus(after[i]).times_real(at).plus(after[i]);
         }
         before[level] = after[0];
     }
-    [before, after]
 }
 
 /// `a` in the lanes of a mask, else `b`.
 #[inline(always)]
-fn merged<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
-    l: L,
-    mask: L::Mask,
-    a: &[W; M],
-    b: &mut [W; M],
-) {
-    for i in 0..M {
+fn merged<L: Lanes<Scalar = f64>, W: Word<L>>(l: L, mask: L::Mask, a: &[W], b: &mut [W]) {
+    for i in 0..a.len() {
         b[i] = W::select(l, mask, a[i], b[i]);
     }
 }
@@ -182,7 +171,7 @@ struct Segment<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize> {
 
 impl<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize> Segment<L, W, M> {
     #[inline(always)]
-    fn take(&mut self, l: L, mask: L::Mask, coefficients: &[W; M], from: L::Real, width: L::Real) {
+    fn take(&mut self, l: L, mask: L::Mask, coefficients: &[W], from: L::Real, width: L::Real) {
         merged(l, mask, coefficients, &mut self.coefficients);
         self.from = l.select(mask, from, self.from);
         self.width = l.select(mask, width, self.width);
@@ -197,27 +186,30 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
 ) -> Roots<L> {
     let (zero, one) = (l.real(0.0), l.real(1.0));
     let nobody = l.mask(false);
-    let mut rest = problem.coefficients;
+    let count = problem.count;
+    let mut coefficients = problem.coefficients;
+    let rest = &mut coefficients[..count];
     // Turned so that they are positive at first; a start on a root has the sign that follows it.
     let start = rest[0].head();
     let mut known = problem.on_root & !start.abs().gt(problem.start_error);
     let negative = l.select(known, rest[1].head(), start).lt(zero);
     let sign = l.select(negative, -one, one);
     let mut largest = zero;
-    let counted = M - problem.roots_at_end.min(M - 1);
+    let counted = count - problem.roots_at_end.min(count - 1);
     for c in &mut rest[counted..] {
         *c = W::constant(l, [0.0; 2]);
     }
-    for c in &mut rest {
+    for c in rest.iter_mut() {
         *c = c.times_real(sign);
         largest = largest.max(c.head().abs());
     }
     // One split's worth pays for `value`, too.
-    let own = split_error(M - 1, W::UNIT) * problem.accounted;
+    let own = split_error(count - 1, W::UNIT) * problem.accounted;
     let per_split = largest * l.real(own);
     let mut error = problem.error + per_split;
+    let (mut before, mut after) = (problem.coefficients, problem.coefficients);
     let mut segment = Segment {
-        coefficients: rest,
+        coefficients: problem.coefficients,
         from: zero,
         width: one,
     };
@@ -230,7 +222,7 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
         let s = signs(l, &rest[..counted], error, known);
         let alone = fresh & s.one_change;
         if alone.any() {
-            segment.take(l, alone, &rest, from, one - from);
+            segment.take(l, alone, rest, from, one - from);
             found = found | alone;
         }
         absent = absent | (fresh & s.positive);
@@ -240,15 +232,17 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
             break;
         }
         // What is left of a part that was not decided as a whole comes first.
-        let next = l.select(part.lt(one), part, minimum(l, &rest, error));
+        let next = l.select(part.lt(one), part, minimum(l, rest, error));
         at = l.select(fresh, next, at);
         doubt = l.select(open, at.mul_add(one - from, from), doubt);
-        let [before, after] = split(&rest, at);
+        let (before, after) = (&mut before[..count], &mut after[..count]);
+        after.copy_from_slice(rest);
+        split(after, before, at);
         error = error + per_split;
-        let s = signs(l, &before, error, known);
+        let s = signs(l, before, error, known);
         let alone = open & s.one_change;
         if alone.any() {
-            segment.take(l, alone, &before, from, at * (one - from));
+            segment.take(l, alone, before, from, at * (one - from));
             found = found | alone;
         }
         given_up = given_up | (open & s.touching);
@@ -256,11 +250,11 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
         let left = l.select(part.gt(at), (part - at) / (one - at), one);
         part = l.select(fresh, left, l.select(open, at, part));
         if fresh.any() {
-            merged(l, fresh, &after, &mut rest);
+            merged(l, fresh, after, rest);
             from = l.select(fresh, at.mul_add(one - from, from), from);
             known = known & !fresh;
         }
-        at = at * minimum(l, &before, error);
+        at = at * minimum(l, before, error);
     }
     let mut roots = Roots {
         found,
@@ -272,7 +266,7 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
         doubt,
     };
     if found.any() {
-        let [root, low, high] = refined(l, &segment.coefficients, error, found);
+        let [root, low, high] = refined(l, &segment.coefficients, count, error, found);
         // Two roundings a split in `from`, and three here, of numbers below 1.
         let slack = l.real((2 * MOST_SPLITS * W::ROWS + 3) as f64 * f64::EPSILON / 2.0);
         roots.root = root.mul_add(segment.width, segment.from);
@@ -285,18 +279,14 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
 /// The value at x in [0, 1] of a form with coefficients C(n, i) cᵢ: Σ C(n, i) cᵢ xⁱ (1 − x)ⁿ⁻ⁱ by
 /// Horner's rule, with 1 − x rounded once. The error is below (5n + 3)U times the largest cᵢ.
 #[inline(always)]
-fn value<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
-    l: L,
-    scaled: &[W; M],
-    x: L::Real,
-) -> L::Real {
+fn value<L: Lanes<Scalar = f64>, W: Word<L>>(l: L, scaled: &[W], x: L::Real) -> L::Real {
     let x = W::real(l, x);
     let y = W::real(l, l.real(1.0)).minus(x);
     let mut power = x;
     let mut sum = scaled[0];
     for (i, c) in scaled.iter().enumerate().skip(1) {
         sum = sum.fused(y, c.times(power));
-        if i < M - 1 {
+        if i < scaled.len() - 1 {
             power = power.times(x);
         }
     }
@@ -305,17 +295,17 @@ fn value<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
 
 /// Where the control polygon crosses zero.
 #[inline(always)]
-fn crossing<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(l: L, c: &[W; M]) -> L::Real {
+fn crossing<L: Lanes<Scalar = f64>, W: Word<L>>(l: L, c: &[W]) -> L::Real {
     let zero = l.real(0.0);
     let (mut place, mut above, mut fall) = (zero, zero, l.real(1.0));
-    for i in 1..M {
+    for i in 1..c.len() {
         let (before, after) = (c[i - 1].head(), c[i].head());
         let crosses = before.gt(zero) & !after.gt(zero);
         place = l.select(crosses, l.real((i - 1) as f64), place);
         above = l.select(crosses, before, above);
         fall = l.select(crosses, before - after, fall);
     }
-    (above / fall + place) * l.real(1.0 / (M - 1) as f64)
+    (above / fall + place) * l.real(1.0 / (c.len() - 1) as f64)
 }
 
 /// The only root of polynomials that go from positive to negative, with its enclosure.
@@ -323,31 +313,35 @@ fn crossing<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(l: L, c: &[W; M]
 fn refined<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
     l: L,
     segment: &[W; M],
+    count: usize,
     error: L::Real,
     active: L::Mask,
 ) -> [L::Real; 3] {
     let (zero, one, half) = (l.real(0.0), l.real(1.0), l.real(0.5));
     // Powers of x by differences: good to a few digits less than the coefficients.
-    let mut powers = [zero; M];
-    let mut scaled = *segment;
-    for i in 0..M {
-        powers[i] = segment[i].head();
-        scaled[i] = segment[i].times_real(l.real(binomial(M - 1, i)));
+    let (mut powers, mut scaled) = ([zero; M], *segment);
+    let (powers, scaled) = (&mut powers[..count], &mut scaled[..count]);
+    for (power, c) in powers.iter_mut().zip(scaled.iter()) {
+        *power = c.head();
     }
-    for level in 1..M {
-        for i in (level..M).rev() {
+    for level in 1..count {
+        for i in (level..count).rev() {
             powers[i] = powers[i] - powers[i - 1];
         }
     }
-    for (i, c) in powers.iter_mut().enumerate() {
-        *c = *c * l.real(binomial(M - 1, i));
+    let mut binomial = 1;
+    for i in 0..count {
+        let times = l.real(f64::from(binomial));
+        scaled[i] = scaled[i].times_real(times);
+        powers[i] = powers[i] * times;
+        binomial = next_binomial(count - 1, i, binomial);
     }
     let (mut low, mut high) = (zero, one);
-    let mut x = crossing(l, segment);
+    let mut x = crossing(l, &segment[..count]);
     let mut slope = -one;
     for _ in 0..MOST_STEPS {
-        let (mut f, mut d) = (powers[M - 1], zero);
-        for c in powers[..M - 1].iter().rev() {
+        let (mut f, mut d) = (powers[count - 1], zero);
+        for c in powers[..count - 1].iter().rev() {
             d = d.mul_add(x, f);
             f = f.mul_add(x, *c);
         }
@@ -367,14 +361,14 @@ fn refined<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
             break;
         }
     }
-    enclosed(l, &scaled, error, active, x, slope)
+    enclosed(l, scaled, error, active, x, slope)
 }
 
 /// Improves the estimate by accurate values and encloses the root by certain signs.
 #[inline(always)]
-fn enclosed<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
+fn enclosed<L: Lanes<Scalar = f64>, W: Word<L>>(
     l: L,
-    scaled: &[W; M],
+    scaled: &[W],
     error: L::Real,
     active: L::Mask,
     estimate: L::Real,

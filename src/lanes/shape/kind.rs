@@ -218,6 +218,21 @@ impl<T: Scalar> LaneShape<T> {
         of!(kind, lane_span(l, &question))
     }
 
+    /// The same by a call: one copy of code for all who ask single objects.
+    #[inline(never)]
+    pub fn span_by_call<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        ray: &LaneRay<L>,
+        asked: L::Mask,
+        limit: L::Real,
+    ) -> lanes::Span<L> {
+        l.vectorize(
+            #[inline(always)]
+            || self.span(l, ray, asked, limit),
+        )
+    }
+
     /// [`Canonical::parts`].
     pub fn parts(&self) -> Vec<Part<T>> {
         match self.kind {

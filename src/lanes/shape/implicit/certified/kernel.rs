@@ -5,8 +5,8 @@ use super::{Answers, Ask, Packet, SHARP, WIDTH};
 use crate::field::program::Step;
 use crate::math::instructions::DoubleLanes;
 use crate::math::lanes::{Mask, Real};
-use crate::math::words::{Row, Word};
-use crate::root::bernstein::{Problem, Roots, first_roots};
+use crate::math::words::{Pair, Plain, Row, Word};
+use crate::root::bernstein::{MOST, Problem, Roots, first_roots};
 
 /// A clipped packet.
 struct Clipped<L: DoubleLanes> {
@@ -23,7 +23,7 @@ struct Clipped<L: DoubleLanes> {
 
 /// The first hits, as far as this arithmetic can tell; as many rays at once as there are lanes.
 #[inline(never)]
-pub(super) fn first_hits<L: DoubleLanes, W: Word<L>>(l: L, ask: Ask<'_>) -> Answers {
+pub(super) fn first_hits<L: DoubleLanes, W: Solving<L>>(l: L, ask: Ask<'_>) -> Answers {
     l.vectorize(
         #[inline(always)]
         || {
@@ -302,7 +302,7 @@ fn square<L: DoubleLanes, W: Word<L>>(
 }
 
 /// What is asked of a factor's coefficients.
-struct Question<L: DoubleLanes> {
+pub(super) struct Question<L: DoubleLanes> {
     error: L::Real,
     start_error: L::Real,
     accounted: f64,
@@ -312,20 +312,23 @@ struct Question<L: DoubleLanes> {
 }
 
 impl<L: DoubleLanes> Question<L> {
-    /// In a function of its own for each degree, so that its numbers can stay in registers.
+    /// In a function of its own for M coefficients, so that its numbers can stay in registers, or
+    /// in one for up to [`MOST`].
     #[inline(never)]
-    fn ask<W: Word<L>, const M: usize>(&self, l: L, rows: &[Row]) -> Roots<L> {
+    fn ask<W: Word<L>, const M: usize>(&self, l: L, rows: &[Row], count: usize) -> Roots<L> {
         l.vectorize(
             #[inline(always)]
             || {
+                let count = if M == MOST { count } else { M };
                 let mut coefficients = [W::constant(l, [0.0; 2]); M];
-                for (i, c) in coefficients.iter_mut().enumerate() {
+                for (i, c) in coefficients[..count].iter_mut().enumerate() {
                     *c = W::load(l, rows, i);
                 }
                 first_roots(
                     l,
                     &Problem {
                         coefficients,
+                        count,
                         error: self.error,
                         on_root: self.on_root,
                         start_error: self.start_error,
@@ -336,6 +339,33 @@ impl<L: DoubleLanes> Question<L> {
                 )
             },
         )
+    }
+}
+
+/// An arithmetic with a solver.
+pub(super) trait Solving<L: DoubleLanes>: Word<L> {
+    /// The first roots of polynomials with `count` coefficients.
+    fn solve(l: L, question: &Question<L>, rows: &[Row], count: usize) -> Roots<L>;
+}
+
+impl<L: DoubleLanes> Solving<L> for Plain<L> {
+    #[inline(always)]
+    fn solve(l: L, question: &Question<L>, rows: &[Row], count: usize) -> Roots<L> {
+        match count {
+            3 => question.ask::<Self, 3>(l, rows, count),
+            5 => question.ask::<Self, 5>(l, rows, count),
+            7 => question.ask::<Self, 7>(l, rows, count),
+            9 => question.ask::<Self, 9>(l, rows, count),
+            _ => question.ask::<Self, MOST>(l, rows, count),
+        }
+    }
+}
+
+/// Few rays need it: a solver for each degree would be code for nothing.
+impl<L: DoubleLanes> Solving<L> for Pair<L> {
+    #[inline(always)]
+    fn solve(l: L, question: &Question<L>, rows: &[Row], count: usize) -> Roots<L> {
+        question.ask::<Self, MOST>(l, rows, count)
     }
 }
 
@@ -370,7 +400,7 @@ impl<L: DoubleLanes> Combined<L> {
     }
 
     #[inline(always)]
-    fn join<W: Word<L>>(
+    fn join<W: Solving<L>>(
         &mut self,
         l: L,
         factor: &FactorField,
@@ -395,14 +425,7 @@ impl<L: DoubleLanes> Combined<L> {
             active: self.open & !self.undecided,
         };
         let rows = &rows[W::ROWS * result.at..];
-        let roots = match result.degree {
-            2 => question.ask::<W, 3>(l, rows),
-            4 => question.ask::<W, 5>(l, rows),
-            6 => question.ask::<W, 7>(l, rows),
-            8 => question.ask::<W, 9>(l, rows),
-            12 => question.ask::<W, 13>(l, rows),
-            _ => question.ask::<W, 25>(l, rows),
-        };
+        let roots = W::solve(l, &question, rows, result.degree + 1);
         let width = clipped.far - clipped.near;
         let largest = clipped.near.abs().max(clipped.far.abs());
         let slack = largest * l.real(2.0 * f64::EPSILON);
