@@ -8,11 +8,11 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+use etalon::compare::{LEVEL, Side, flip, judge};
 use etalon::film::provenance::hash;
 use etalon::film::spectral::channel_name;
 use etalon::film::{Attribute, Channel, Picture, exr, names};
 use etalon::stats::student;
-use etalon::study::compare::{LEVEL, Side, flip, judge};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::Value;

@@ -10,12 +10,12 @@
 
 use std::path::Path;
 
+use etalon::compare::Side;
 use etalon::render::bins::BinGrid;
 use etalon::scene::{Overrides, SamplerKind, load};
 use etalon::stats::Estimate;
 use etalon::stats::family::sidak;
 use etalon::study::agreement::Case;
-use etalon::study::compare::Side;
 use rayon::prelude::*;
 
 /// Probability of any false alarm here.

@@ -16,10 +16,9 @@ use etalon::root::interval::{Enclosed, PIECES, Pieces, first_zero};
 use etalon::shape::Ray;
 use etalon::shape::implicit::enclosed::{EnclosedField, Method, Searching};
 use etalon::shape::ladder::{Ladder, ScaledRay};
-use etalon::study::finders::OracleShape;
 use glam::DVec3;
 
-use crate::oracle_support::{self, IMPLICIT, number, shapes, vector};
+use crate::oracle_support::{self, IMPLICIT, OracleShape, number, shapes, vector};
 
 /// A row of the oracle: a ray, and its first root with multiplicity.
 struct Row {

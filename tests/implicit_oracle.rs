@@ -16,10 +16,9 @@ use etalon::scene::{FinderChoice, Implicit};
 use etalon::shape::implicit::certified::{Certified, Packet, WIDTH, Wish, Workspace};
 use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitHit, ImplicitTally, PlacedImplicit};
 use etalon::shape::{Query, Ray};
-use etalon::study::finders::OracleShape;
 use fearless_simd::Level;
 
-use crate::oracle_support::{IMPLICIT, Row, number, rows, shapes, vector};
+use crate::oracle_support::{IMPLICIT, OracleShape, Row, number, rows, shapes, vector};
 
 struct Surface {
     implicit: Implicit,

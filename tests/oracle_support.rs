@@ -6,8 +6,9 @@
 )]
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
-use etalon::study::finders::{Oracle, OracleShape};
+use etalon::field::expression::{Expression, Parameter, parse, rational};
 use glam::DVec3;
 
 /// Rays with implicit surfaces: every number is meant exactly, t to 22 digits.
@@ -34,7 +35,44 @@ pub fn vector(row: &Row, names: [&str; 3]) -> DVec3 {
     DVec3::from_array(names.map(|name| number(row, name)))
 }
 
-/// The surfaces that the rays of [`IMPLICIT`] are about.
+/// A surface within the cube [−half_width, half_width]³.
+pub struct OracleShape {
+    /// What rays call it.
+    pub name: String,
+    /// Half the cube's edge.
+    pub half_width: f64,
+    /// Its field.
+    pub field: Arc<Expression>,
+}
+
+impl OracleShape {
+    /// The cube's corners.
+    pub fn inside(&self) -> [DVec3; 2] {
+        [-self.half_width, self.half_width].map(DVec3::splat)
+    }
+}
+
+/// The surfaces that the rays of [`IMPLICIT`] are about: lines
+/// `name;half_width;degree;expression[, NAME=value]` below a heading.
 pub fn shapes() -> Vec<OracleShape> {
-    Oracle::new(None, None).unwrap().shapes
+    let lines = include_str!("data/implicit_shapes.csv").lines().skip(1);
+    let shape = |line: &str| {
+        let [name, half, _, written] = line.split(';').collect::<Vec<_>>().try_into().unwrap();
+        let mut parts = written.split(", ");
+        let expression = parts.next().unwrap();
+        let parameters = parts.map(|part| {
+            let (name, value) = part.split_once('=').unwrap();
+            Parameter {
+                name: name.to_owned(),
+                value: rational(value).unwrap(),
+            }
+        });
+        let parameters: Vec<Parameter> = parameters.collect();
+        OracleShape {
+            name: name.to_owned(),
+            half_width: half.parse().unwrap(),
+            field: Arc::new(parse(expression, &parameters).unwrap()),
+        }
+    };
+    lines.map(shape).collect()
 }

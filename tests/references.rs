@@ -13,11 +13,11 @@
 
 use std::path::{Path, PathBuf};
 
+use etalon::compare::Side;
+use etalon::compare::stale::{Freshness, freshness};
 use etalon::film::names;
 use etalon::stats::verdict::POWER;
 use etalon::study::agreement::{Case, Levels, Outcome, Paths, Planned, SHARP, decide, plan};
-use etalon::study::compare::Side;
-use etalon::study::compare::stale::{Freshness, freshness};
 use statrs::distribution::{Binomial, DiscreteCDF};
 
 /// Probability of a false alarm of all references together.

@@ -13,7 +13,8 @@ use etalon::math::lanes::{Lanes, Scalar};
 use etalon::sample::Slot;
 use etalon::sample::mis::power_weight;
 use etalon::sample::permute::permute;
-use etalon::sample::sequence::{Identity, Replicates, Sequence};
+use etalon::sample::replicates::Replicates;
+use etalon::sample::sequence::{Identity, Sequence};
 use etalon::sample::sobol::nested_scramble;
 use etalon::sample::warp::{
     cosine_hemisphere, cosine_hemisphere_pdf, square_to_disk, uniform_sphere,

@@ -8,10 +8,10 @@
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+use etalon::chart::row::{self, Row};
+use etalon::chart::{Key, curves};
 use etalon::film::{Attribute, Picture, exr, provenance};
-use etalon::study::axis::{Axis, Key};
-use etalon::study::row::{self, Row};
-use etalon::study::summary::curves;
+use etalon::study::axis::Axis;
 use tempfile::TempDir;
 
 /// A closed ball that glows and reflects half of what falls on it, seen from inside: 0.5/(1 − 0.5).
@@ -124,8 +124,6 @@ fn a_study_writes_rows_charts_and_a_report() {
     }
     for name in ["error", "speed", "honesty"] {
         assert!(studio.text(&format!("out/{name}.svg")).starts_with("<svg"));
-        let png = std::fs::read(studio.path().join(format!("out/{name}.png"))).unwrap();
-        assert_eq!(&png[1..4], b"PNG");
     }
     let page = studio.text("out/report.html");
     for part in [

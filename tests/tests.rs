@@ -5,7 +5,6 @@ mod cli_render;
 mod compare;
 mod convergence;
 mod equilibrium;
-mod failure_maps;
 mod film_files;
 mod fresnel;
 mod implicit_afar;

@@ -3,7 +3,7 @@
 
     tools/exact_views.py [--size 700] [--distances 1 10 100 1000] [--every 10] [--threads 2]
 
-Primary rays of the heart and of Mitchell's surface, hits by `cargo bench --bench implicit -- view`. For each
+Primary rays of the heart and of Mitchell's surface, hits by `cargo bench -p etalon-method -- view`. For each
 pixel on a silhouette (one of its eight neighbours' answers differs) and one of `--every` pixels in both
 directions of the rest, the field along the ray is formed in rational numbers from the rays' own f64, and
 its roots are isolated by FLINT (Johansson 2017, `python-flint`), which certifies them. Printed are the pixels
@@ -30,7 +30,7 @@ WRONG = 1e-12
 def depths(name, size, distance):
     """t of each pixel's hit, infinite for a miss."""
     with tempfile.NamedTemporaryFile(suffix=".f64") as file:
-        command = ["cargo", "bench", "--bench", "implicit", "--", "view", name, str(size), repr(distance), file.name]
+        command = ["cargo", "bench", "-p", "etalon-method", "--", "view", name, str(size), repr(distance), file.name]
         subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
         return np.fromfile(file.name, "<f8").reshape(size, size)
 

@@ -5,7 +5,7 @@
 
 Both get the same rays through the same pixels, one thread each. POV-Ray's time is that of its process less
 that of an empty scene; it shades its hits with a constant colour that is the depth. etalon's time is that of
-`cargo bench --bench implicit -- view`: finding hits, coefficients formed anew for each ray. Printed are
+`cargo bench -p etalon-method -- view`: finding hits, coefficients formed anew for each ray. Printed are
 microseconds a ray, and on how many pixels POV-Ray's picture differs from the certified one: in whether there
 is a hit, and by more than 1e-3 of the box in its depth.
 """
@@ -180,7 +180,7 @@ def sixteen_bits(path, folder):
 def etalon(name, size, distance, folder):
     """Microseconds a ray and depths over the box, infinite where nothing is hit."""
     file = folder / "depths.f64"
-    command = ["cargo", "bench", "--quiet", "--bench", "implicit", "--", "view", name, str(size), repr(distance)]
+    command = ["cargo", "bench", "--quiet", "-p", "etalon-method", "--", "view", name, str(size), repr(distance)]
     printed = subprocess.run(
         [*command, str(file)], cwd=ROOT, check=True, capture_output=True, text=True
     ).stdout

@@ -4,9 +4,9 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use etalon::chart::figures::USUAL_ERROR;
 use etalon::scene::Overrides;
 use etalon::study::axis::Axis;
-use etalon::study::charts::USUAL_ERROR;
 use etalon::study::choice::Choice;
 
 use super::values::{
@@ -42,8 +42,6 @@ pub enum Command {
     Replay(Replay),
     /// Compare a picture with another or with a number: metrics, and whether noise explains it.
     Compare(Compare),
-    /// Compare the root finders of implicit surfaces over rays whose first hits are known.
-    Finders(Finders),
     /// Measure how a scene's error falls with samples and seconds, for a grid of choices.
     Study(Box<Study>),
     /// Count how often the 95 % intervals of blocks of pixels hold what they should.
@@ -332,55 +330,12 @@ pub struct Compare {
     pub heatmap: Option<PathBuf>,
 }
 
-/// Arguments of `etalon finders`.
-#[derive(Debug, Args)]
-#[command(after_help = "\
-Without --map, every finder runs over the rays, one after the other on one thread, and \
-finders.csv and finders.svg in the output directory say by class of ray how often it was wrong, how \
-often undecided, and how long a ray took. The rays are CSV with the columns shape, class, ox, oy, \
-oz, dx, dy, dz, tmin, hit, t and gap; the shapes are lines name;half_width;degree;expression below a \
-heading. With --map, a PNG shows for each finder which pixels of one surface it gets wrong (red) or \
-leaves undecided (amber), where auto is the truth.
-
-Exit code 1 if a finder that proves its answers was wrong.
-
-Examples:
-  etalon finders -o charts
-  etalon finders --map heart --size 400")]
-pub struct Finders {
-    /// The CSV file of rays; by default those that come with the program.
-    #[arg(long, value_name = "FILE")]
-    pub rays: Option<PathBuf>,
-    /// The file of surfaces; by default those that come with the program.
-    #[arg(long, value_name = "FILE")]
-    pub shapes: Option<PathBuf>,
-    /// The directory to write to.
-    #[arg(short, long, value_name = "DIR", default_value = ".")]
-    pub output: PathBuf,
-    /// Paint the pixels of this surface instead.
-    #[arg(long, value_name = "SURFACE")]
-    pub map: Option<String>,
-    /// Map where each method fails instead: all shapes and precisions over families of rays that grow
-    /// harder.
-    #[arg(long, conflicts_with_all = ["map", "rays", "shapes"])]
-    pub failures: bool,
-    /// Rays a shape, family and difficulty of the failure maps.
-    #[arg(long, value_name = "RAYS", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=100_000))]
-    pub count: u32,
-    /// Width and height of each map in pixels.
-    #[arg(long, value_name = "PIXELS", default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..=4096))]
-    pub size: u32,
-    /// Say nothing on stderr but errors.
-    #[arg(short, long)]
-    pub quiet: bool,
-}
-
 /// Arguments of `etalon study`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Each point of the grid is rendered --replicates times with independent seeds and compared with the \
 reference. The directory then holds study.csv with one row a render (its columns are explained in \
-scenes/README.md), the charts error, speed and honesty as SVG and PNG, and report.html, which needs \
+scenes/README.md), the charts error, speed and honesty as SVG, and report.html, which needs \
 no other file. The same command goes on with a study that was interrupted.
 
 Axes: spp, max_depth, wavelengths, scrambles (numbers: lists such as 4,8 and ranges such as \
@@ -440,7 +395,7 @@ pub struct Chart {
     /// Tables of studies.
     #[arg(value_name = "FILE.csv", required = true)]
     pub tables: Vec<PathBuf>,
-    /// The chart to write, as SVG and PNG.
+    /// The chart to write, as SVG.
     #[arg(short, long, value_name = "OUT", default_value = "chart")]
     pub output: PathBuf,
     /// The relative mean squared error at which the programs' times are compared.

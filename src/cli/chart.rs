@@ -1,8 +1,6 @@
 //! `etalon chart`: several studies in one picture of speed and accuracy.
 
-use etalon::study::axis::Key;
-use etalon::study::summary::curves;
-use etalon::study::{charts, row};
+use etalon::chart::{Key, curves, figures, row};
 
 use super::args;
 use super::error::CommandError;
@@ -33,15 +31,14 @@ pub fn run(arguments: &args::Chart) -> Result<Answer, CommandError> {
         tell("note: the tables are of different scenes or panels");
     }
     let curves = curves(&rows, Key::Spp);
-    let figure = charts::error_over_seconds(&curves, arguments.at);
+    let figure = figures::error_over_seconds(&curves, arguments.at);
     let svg = figure
         .svg()
         .map_err(|e| CommandError::Study(e.to_string()))?;
-    let paths = write_chart(&arguments.output, &svg)?;
+    let path = write_chart(&arguments.output, &svg)?;
     let mut lines = vec![format!(
-        "{}, {}: {} curves of {} renders",
-        paths[0].display(),
-        paths[1].display(),
+        "{}: {} curves of {} renders",
+        path.display(),
         curves.len(),
         rows.len()
     )];

@@ -5,14 +5,14 @@ mod text;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use etalon::film::Attribute;
-use etalon::stats::Estimate;
-use etalon::stats::metrics::Metric;
-use etalon::study::compare::stale::{Freshness, different_scenes, freshness};
-use etalon::study::compare::{
+use etalon::compare::stale::{Freshness, different_scenes, freshness};
+use etalon::compare::{
     ChannelMetrics, Judgement, LEVEL, Metrics, Side, against_truth, flip, judge, metrics,
     write_heatmap,
 };
+use etalon::film::Attribute;
+use etalon::stats::Estimate;
+use etalon::stats::metrics::Metric;
 use serde::Serialize;
 
 use super::Answer;
@@ -209,7 +209,7 @@ fn why_not(a: &Side, b: Option<&Side>) -> String {
 }
 
 /// A difference in standard errors, for people.
-fn score(judged: &etalon::study::compare::ChannelJudgement) -> f64 {
+fn score(judged: &etalon::compare::ChannelJudgement) -> f64 {
     Estimate {
         value: judged.relative_bias,
         standard_error: judged.standard_error,

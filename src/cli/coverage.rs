@@ -21,7 +21,7 @@ const SURVEY_SHARE: u32 = 16;
 /// Shares of blocks between which 95 % intervals are honest.
 const HONEST: [f64; 2] = [0.93, 0.97];
 /// Edge of blocks: pictures are whole blocks where they can be.
-const BLOCK: u32 = etalon::render::blocks::EDGE as u32;
+const BLOCK: u32 = etalon::stats::blocks::EDGE as u32;
 
 /// Tests all scenes with all samplers.
 pub fn run(arguments: &args::Coverage) -> Result<Answer, CommandError> {

@@ -3,13 +3,12 @@
 use std::io;
 use std::path::PathBuf;
 
+use etalon::compare::CompareError;
 use etalon::film;
 use etalon::plan::PlanError;
 use etalon::render::bins::BinError;
 use etalon::render::target::Singular;
 use etalon::scene::SceneError;
-use etalon::study::compare::CompareError;
-use etalon::study::finders::OracleError;
 
 use super::trace::RayError;
 
@@ -32,25 +31,6 @@ pub enum CommandError {
         path: PathBuf,
         /// Why.
         reason: String,
-    },
-    /// A result of the comparison of finders cannot be written.
-    #[error("error: cannot write {}: {reason}", path.display())]
-    Result {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        reason: String,
-    },
-    /// The rays or surfaces of the comparison of finders cannot be used.
-    #[error("error: {0}")]
-    Oracle(#[from] OracleError),
-    /// There is no such surface to paint.
-    #[error("error: --map: there is no surface \"{name}\"; there are {known}")]
-    Surface {
-        /// As it was asked for.
-        name: String,
-        /// All there are.
-        known: String,
     },
     /// The scene cannot be carried out.
     #[error("error: {0}")]

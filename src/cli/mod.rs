@@ -5,7 +5,6 @@ mod chart;
 mod compare;
 mod coverage;
 mod error;
-mod finders;
 mod info;
 mod render;
 mod replay;
@@ -45,7 +44,6 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Trace(trace) => trace::run(trace),
         Command::Replay(replay) => replay::run(replay),
         Command::Compare(compare) => compare::run(compare),
-        Command::Finders(finders) => finders::run(finders),
         Command::Study(study) => study::run(study),
         Command::Coverage(coverage) => coverage::run(coverage),
         Command::Chart(chart) => chart::run(chart),

@@ -4,14 +4,11 @@ mod watch;
 
 use std::path::{Path, PathBuf};
 
-use etalon::study::axis::Key;
-use etalon::study::charts;
-use etalon::study::figure::Figure;
+use etalon::chart::{self, Curve, Figure, Key, curves, figures};
 use etalon::study::own::MARGIN;
 use etalon::study::run::{Request, Study, run as run_study};
 use etalon::study::subject::Subject;
-use etalon::study::summary::{self, Curve, curves};
-use etalon::study::{StudyError, choice, raster, report};
+use etalon::study::{StudyError, choice, report};
 
 use super::args;
 use super::error::CommandError;
@@ -85,12 +82,12 @@ fn publish(request: &Request, study: &Study) -> Result<(), CommandError> {
         return Ok(());
     }
     let figures = [
-        ("error", charts::error_over_abscissa(&curves, abscissa)),
+        ("error", figures::error_over_abscissa(&curves, abscissa)),
         (
             "speed",
-            charts::error_over_seconds(&curves, charts::USUAL_ERROR),
+            figures::error_over_seconds(&curves, figures::USUAL_ERROR),
         ),
-        ("honesty", charts::estimated_over_actual(&curves, abscissa)),
+        ("honesty", figures::estimated_over_actual(&curves, abscissa)),
     ];
     let mut drawn = Vec::new();
     for (name, figure) in &figures {
@@ -104,23 +101,15 @@ fn publish(request: &Request, study: &Study) -> Result<(), CommandError> {
     write(&request.directory.join("report.html"), page.as_bytes())
 }
 
-/// Writes a chart as NAME.svg and NAME.png, whose paths it returns; an ending of NAME that is one of
-/// these is dropped, any other dot belongs to the name.
-pub fn write_chart(base: &Path, svg: &str) -> Result<[PathBuf; 2], CommandError> {
-    let picture = raster::png(svg).map_err(|error| CommandError::Study(error.to_string()))?;
-    let ending = base.extension().and_then(|ending| ending.to_str());
-    let bare = match ending {
-        Some("svg" | "png") => base.with_extension(""),
-        _ => base.to_owned(),
-    };
-    let paths = [".svg", ".png"].map(|ending| {
-        let mut name = bare.clone().into_os_string();
-        name.push(ending);
-        PathBuf::from(name)
-    });
-    write(&paths[0], svg.as_bytes())?;
-    write(&paths[1], &picture)?;
-    Ok(paths)
+/// Writes a chart as NAME.svg and returns that path; NAME may have the ending already, any other dot
+/// belongs to the name.
+pub fn write_chart(base: &Path, svg: &str) -> Result<PathBuf, CommandError> {
+    let mut path = base.to_owned();
+    if base.extension().is_none_or(|ending| ending != "svg") {
+        path.as_mut_os_string().push(".svg");
+    }
+    write(&path, svg.as_bytes())?;
+    Ok(path)
 }
 
 /// Writes a file, whole or not at all.
@@ -161,7 +150,7 @@ fn known(study: &Study, curves: &[Curve]) -> String {
     if own == 0.0 {
         return String::new();
     }
-    let times = summary::best(curves) / own;
+    let times = chart::best(curves) / own;
     let enough = if times < MARGIN {
         "; points near it are known the worse, and marked where it is the larger part"
     } else {

@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use crate::math::lanes::Scalar;
-use crate::sample::sequence::Replicates;
+use crate::sample::replicates::Replicates;
 
 /// Sums of X, Y, Z by pixel and replicate.
 #[derive(Debug, Clone)]

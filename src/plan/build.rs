@@ -1,22 +1,17 @@
 //! From a scene and its choices to the tables of the loop.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use super::PlanError;
 use super::choose::Choices;
-use super::extent::{
-    about_camera, columns, is_right_circular, is_similarity, perpendicular, translation,
-};
+use super::extent::about_camera;
 use super::occluders::occluders;
 use crate::camera::LaneCamera;
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::list::List;
 use crate::integrate::model::{Checker, Many, Model, ObjectShading, Scatter};
 use crate::integrate::parts::Parts;
-use crate::light::{
-    CubeLight, CylinderLight, LaneLight, LightShape, MappedLight, PlanarLight, RectangleLight,
-    SmallLights, SphereLight, cylinder_area, ellipsoid_area,
-};
+use crate::light::{self, LaneLight, LightShape, SmallLights};
 use crate::math::affine::Affine;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Sequence;
@@ -25,7 +20,7 @@ use crate::shape::hierarchy::Bounds;
 use crate::shape::lanes::LaneShape;
 use crate::shape::lanes::implicit::LaneImplicit;
 use crate::shape::resolve::Resolver;
-use crate::shape::{Emitter, Placed, ShapeKind};
+use crate::shape::{Placed, ShapeKind};
 use crate::spectrum::Spectrum;
 use crate::spectrum::cells;
 use crate::spectrum::grid::{SpectrumBank, WavelengthGrid};
@@ -274,7 +269,10 @@ impl<'a, T: Scalar> Builder<'a, T> {
         if let Some(emission) = &material.emission {
             shading.emission = Some(self.spectrum(&emission.radiance));
             shading.emits = sides(emission.sides);
-            if let Some((shape, area)) = area_light(object, placement, shading.emits) {
+            let kind = object.shape.kind();
+            if let Some((shape, area)) =
+                light::of_shape(kind, &placement.to_world, &placement.inverse, shading.emits)
+            {
                 let power = area * std::f64::consts::PI * strength(&emission.radiance);
                 if power > 0.0 {
                     shading.light = Some(self.lights.len() as u32);
@@ -383,71 +381,4 @@ fn sides(sides: Sides) -> [bool; 2] {
 /// mean so that light outside of the visible is still sampled.
 fn strength(spectrum: &Spectrum) -> f64 {
     spectrum_to_xyz(spectrum)[1] + 1e-3 * spectrum.max_value()
-}
-
-/// The sampler of an emitting object and its area; `None` where only scattered rays find it.
-fn area_light<T: Scalar>(
-    object: &Object,
-    placement: &Placement,
-    emits: [bool; 2],
-) -> Option<(LightShape<T>, f64)> {
-    let [a, b, c] = columns(&placement.to_world);
-    let centre = translation(&placement.to_world);
-    let normal = |axis: usize| {
-        let row = placement.inverse.rows[axis];
-        DVec3::new(row[0], row[1], row[2]).normalize()
-    };
-    match object
-        .shape
-        .kind()
-        .map_or(Emitter::Unsampled, ShapeKind::emitter)
-    {
-        Emitter::Rectangle => {
-            let area = 4.0 * a.cross(b).length();
-            let shape = if perpendicular(a, b) {
-                LightShape::Rectangle(RectangleLight::new(centre, [a, b], normal(2), emits))
-            } else {
-                LightShape::Parallelogram(PlanarLight::new(centre, [a, b], normal(2), 4.0, emits))
-            };
-            Some((shape, area))
-        }
-        Emitter::Disk => {
-            let pi = std::f64::consts::PI;
-            let light = PlanarLight::new(centre, [a, b], normal(2), pi, emits);
-            Some((LightShape::Disk(light), pi * a.cross(b).length()))
-        }
-        Emitter::Sphere if is_similarity(&placement.to_world) => {
-            let radius = a.length();
-            let light = SphereLight::new(centre, radius, emits);
-            Some((
-                LightShape::Sphere(light),
-                4.0 * std::f64::consts::PI * radius * radius,
-            ))
-        }
-        Emitter::Cube => {
-            let normals = [normal(0), normal(1), normal(2)];
-            let area = 8.0 * (a.cross(b).length() + b.cross(c).length() + c.cross(a).length());
-            Some((
-                LightShape::Cube(CubeLight::new(centre, [a, b, c], normals, emits)),
-                area,
-            ))
-        }
-        Emitter::Cylinder if is_right_circular(&placement.to_world) => {
-            let (radius, height) = (a.length(), 2.0 * c.length());
-            let area = 2.0 * std::f64::consts::PI * radius * (radius + height);
-            let light = CylinderLight::new(centre, [a, b], c, emits);
-            Some((LightShape::Cylinder(light), area))
-        }
-        Emitter::Sphere => {
-            let linear = DMat3::from_cols(a, b, c);
-            let light = MappedLight::ellipsoid(centre, linear, emits);
-            Some((LightShape::Mapped(light), ellipsoid_area(linear)))
-        }
-        Emitter::Cylinder => {
-            let linear = DMat3::from_cols(a, b, c);
-            let light = MappedLight::cylinder(centre, linear, emits);
-            Some((LightShape::Mapped(light), cylinder_area(linear)))
-        }
-        Emitter::Unsampled => None,
-    }
 }

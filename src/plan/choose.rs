@@ -6,8 +6,8 @@ use super::needs::{everything, needs};
 use crate::integrate::model::Needs;
 use crate::math::affine::Affine;
 use crate::math::lanes::Scalar;
-use crate::sample::sequence::Replicates;
-use crate::scene::{PrecisionChoice, SamplerKind, Scene};
+use crate::sample::replicates::Replicates;
+use crate::scene::{PrecisionChoice, Scene};
 use crate::shape::{Placed, ShapeKind};
 
 /// Arithmetic of the loop.
@@ -116,13 +116,13 @@ pub fn choose(scene: &Scene, full: bool) -> Result<Choices, PlanError> {
     if !matches!(wavelengths, 4 | 8) {
         return Err(PlanError::Wavelengths { count: wavelengths });
     }
-    let replicates = match (scene.image.replicates, scene.image.sampler) {
-        (Some(count), _) => Replicates::Fixed(count),
-        // Strata are cut for a known number of samples, so their replicates must be too.
-        (None, SamplerKind::Stratified) => {
+    let replicates = match scene.image.replicates {
+        Some(count) => Replicates::Fixed(count),
+        // Points that are cut for a known number of samples need a known number of replicates.
+        None if scene.image.sampler.needs_count() => {
             Replicates::Fixed(Replicates::Growing.count(scene.image.spp))
         }
-        (None, _) => Replicates::Growing,
+        None => Replicates::Growing,
     };
     Ok(Choices {
         needs: if full { everything() } else { needs(scene) },

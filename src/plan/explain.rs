@@ -9,8 +9,8 @@ use crate::film::pixels::Pixels;
 use crate::integrate::model::{Model, Needs};
 use crate::light::LightShape;
 use crate::math::lanes::Scalar;
-use crate::sample::sequence::Replicates;
-use crate::scene::{Object, SamplerKind, Scene, Shape, Surface};
+use crate::sample::replicates::Replicates;
+use crate::scene::{Object, Scene, Shape, Surface};
 use crate::shape::lanes::implicit::LaneImplicit;
 
 /// As many names as a line lists.
@@ -387,12 +387,7 @@ fn finders<T: Scalar>(implicits: &[(u32, LaneImplicit<T>)]) -> Vec<&'static str>
 }
 
 fn sampler(scene: &Scene, plan: &Plan) -> String {
-    let name = match scene.image.sampler {
-        SamplerKind::Independent => "independent numbers",
-        SamplerKind::Stratified => "strata",
-        SamplerKind::Sobol => "Sobol' points with Owen scrambling",
-        SamplerKind::Center => "Sobol' points with Owen scrambling, through the pixel's centre",
-    };
+    let name = scene.image.sampler.words();
     let replicates = plan.choices.replicates;
     let reached = replicates.count(scene.image.spp);
     let law = match replicates {

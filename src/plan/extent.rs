@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::faces;
 use crate::camera::pixel_size;
-use crate::math::affine::Affine;
+use crate::math::affine::{Affine, ROUNDED};
 use crate::scene::{Object, Projection, Scene, Shape};
 use crate::shape::ShapeKind;
 use crate::shape::hierarchy::Bounds;
@@ -41,45 +41,11 @@ pub fn as_ball(object: &Object, to_world: &Affine) -> Option<(DVec3, f64)> {
     if object.shape != Shape::Canonical(ShapeKind::Sphere) {
         return None;
     }
-    let axes = columns(to_world);
+    let axes = to_world.columns();
     let radius = axes[0].length();
-    is_similarity(to_world).then_some((translation(to_world), radius))
-}
-
-/// Images of the axes.
-pub fn columns(to_world: &Affine) -> [DVec3; 3] {
-    let r = &to_world.rows;
-    std::array::from_fn(|j| DVec3::new(r[0][j], r[1][j], r[2][j]))
-}
-
-/// Image of the origin.
-pub fn translation(to_world: &Affine) -> DVec3 {
-    let r = &to_world.rows;
-    DVec3::new(r[0][3], r[1][3], r[2][3])
-}
-
-/// Rounded rotations are off by a few 2⁻⁵³ an entry and composed from at most a few dozen.
-pub(super) const ROUNDED: f64 = 1e-13;
-
-/// Whether two vectors are perpendicular up to the rounding of composed rotations.
-pub fn perpendicular(a: DVec3, b: DVec3) -> bool {
-    a.dot(b).abs() <= ROUNDED * a.length() * b.length()
-}
-
-/// Whether the linear part is a rotation or reflection times a scale, up to rounding.
-pub fn is_similarity(to_world: &Affine) -> bool {
-    let [a, _, c] = columns(to_world);
-    is_right_circular(to_world) && same_length(a, c)
-}
-
-fn same_length(a: DVec3, b: DVec3) -> bool {
-    (a.length() - b.length()).abs() <= ROUNDED * a.length()
-}
-
-/// Whether the map takes the canonical cylinder to a right circular one, up to rounding.
-pub fn is_right_circular(to_world: &Affine) -> bool {
-    let [a, b, c] = columns(to_world);
-    same_length(a, b) && perpendicular(a, b) && perpendicular(b, c) && perpendicular(c, a)
+    to_world
+        .is_similarity()
+        .then_some((to_world.translation(), radius))
 }
 
 /// Pairs are compared up to this many objects; larger scenes are dense, and the pixel decides.
@@ -184,7 +150,7 @@ pub fn worst_error(
                 + 4.0 * roundoff * (row_sum(r) + r[3].abs())
         };
         let position = to_world.rows.iter().map(back).fold(0.0, f64::max);
-        let distance = translation(&to_world).length();
+        let distance = to_world.translation().length();
         let width = match scene.camera.projection {
             Projection::Perspective { .. } => pixel * distance,
             Projection::Orthographic { .. } => pixel,

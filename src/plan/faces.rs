@@ -3,8 +3,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::extent::ROUNDED;
-use crate::math::affine::Affine;
+use crate::math::affine::{Affine, ROUNDED};
 use crate::shape::ShapeKind;
 
 fn linear(map: &Affine) -> DMat3 {

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::extent::{about_camera, columns, translation};
+use super::extent::about_camera;
 use crate::math::affine::Affine;
 use crate::scene::{Light, Scene, Shape, Surface};
 use crate::shape::ShapeKind;
@@ -60,7 +60,7 @@ pub fn occluders(scene: &Scene, lit: &[u32], roundoff: f64) -> Vec<u32> {
         });
         // What stands out by less than the rounding of a hit's coordinates (6 unit roundoffs of the
         // largest, as in `shape::lanes`) cannot be told from the plane.
-        let reach = translation(&placed[k]).abs().max_element();
+        let reach = placed[k].translation().abs().max_element();
         let blur = 6.0 * roundoff * (reach + height.abs());
         low < height - blur && high > height + blur
     };
@@ -75,16 +75,16 @@ fn plane(shape: &Shape, to_world: &Affine) -> Option<(DVec3, f64)> {
     if !shape.kind().is_some_and(ShapeKind::is_flat) {
         return None;
     }
-    let [a, b, _] = columns(to_world);
+    let [a, b, _] = to_world.columns();
     let normal = a.cross(b).try_normalize()?;
-    Some((normal, normal.dot(translation(to_world))))
+    Some((normal, normal.dot(to_world.translation())))
 }
 
 /// The range of normal · p over an object: of its image for the canonical shapes, of the image of
 /// its box for implicit surfaces.
 fn range(shape: &Shape, to_world: &Affine, normal: DVec3) -> Range {
-    let along = DVec3::from_array(columns(to_world).map(|axis| axis.dot(normal)));
-    let mut middle = normal.dot(translation(to_world));
+    let along = DVec3::from_array(to_world.columns().map(|axis| axis.dot(normal)));
+    let mut middle = normal.dot(to_world.translation());
     let half = match shape {
         Shape::Canonical(kind) => kind.half_range(along),
         Shape::Implicit(implicit) => {

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use crate::film::pixels::Estimate;
 use crate::math::lanes::Scalar;
-use crate::sample::sequence::Replicates;
+use crate::sample::replicates::Replicates;
 use crate::spectrum::grid::{CELLS, LONGEST, SHORTEST, WavelengthGrid};
 
 /// Neighbouring bins of equal width.

@@ -5,8 +5,8 @@
 //! Synthesis", SIGGRAPH 1991). Here pilots with seeds of their own say how the error falls; they
 //! choose the number of samples and are thrown away, and the picture is rendered afresh.
 
-use super::blocks;
 use super::session::Rendered;
+use crate::stats::blocks;
 
 /// What the wanted error is an error of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -11,7 +11,7 @@ use crate::integrate::intersect::Rungs;
 use crate::integrate::model::Model;
 use crate::math::instructions::Instructions;
 use crate::math::lanes::Scalar;
-use crate::sample::sequence::Replicates;
+use crate::sample::replicates::Replicates;
 
 /// Edge of a tile in pixels.
 pub const EDGE: u32 = 16;

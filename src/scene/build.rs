@@ -206,7 +206,10 @@ fn image(report: &Report, node: &Node) -> Option<Image> {
         report.count(what, node, 1..=u32::MAX).map(Some)
     });
     let sampler = fields.optional("sampler", SamplerKind::Sobol, |what, node| {
-        let choices = SamplerKind::ALL.map(|kind| (kind.name(), kind));
+        let choices = SamplerKind::ALL
+            .iter()
+            .map(|kind| (kind.name(), *kind))
+            .collect::<Vec<_>>();
         report.choice(what, node, &choices)
     });
     let replicates = fields.optional("replicates", None, |what, node| {

@@ -22,7 +22,8 @@ pub const SMAPE_EPSILON: f64 = 1e-2;
 /// Noise is independent from pixel to pixel, so the spread holds the noise of each term and, beside
 /// it, how much the terms' expectations differ from pixel to pixel: the standard error is never too
 /// small on average, and too large where the error has a structure.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Metric {
     /// The metric.
     pub value: f64,

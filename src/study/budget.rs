@@ -2,16 +2,16 @@
 
 use std::time::{Duration, Instant};
 
-use super::axis::{Axis, Key};
+use super::axis::Axis;
 use super::grid::{Grid, Point};
 use super::measure::measure;
 use super::own::FIRST;
 use super::reference::Reference;
 use super::seeds::seed;
 use super::subject::Ready;
+use crate::chart::Key;
 use crate::film::pixels::{Estimate, Pixels};
 use crate::render::Unwatched;
-use crate::scene::SamplerKind;
 
 /// What a render costs.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -75,9 +75,10 @@ const SHORTEST_AXIS: u32 = 3;
 pub fn pilot(ready: &mut Ready, seconds: f64) -> Cost {
     let base = seed(ready.scene.image.seed, "pilot", 0);
     // Strata are cut for a known number of samples; the other samplers go on as long as wanted.
-    let samples = match ready.scene.image.sampler {
-        SamplerKind::Stratified => ready.scene.image.spp,
-        _ => ready.scene.image.spp.max(1 << 16),
+    let samples = if ready.scene.image.sampler.needs_count() {
+        ready.scene.image.spp
+    } else {
+        ready.scene.image.spp.max(1 << 16)
     };
     let time = Duration::from_secs_f64(seconds);
     let start = Instant::now();

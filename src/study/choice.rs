@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use super::StudyError;
-use super::axis::Key;
 use super::reference::{self, Reference, ReferenceError};
 use super::run::Request;
 use super::subject::{Ready, Subject};
+use crate::chart::Key;
 use crate::scene::{SamplerKind, Scene};
 use crate::spectrum::Spectrum;
 

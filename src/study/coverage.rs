@@ -15,8 +15,9 @@
 
 use super::subject::Ready;
 use crate::render::Unwatched;
-use crate::render::blocks::{EDGE, luminances, members};
+use crate::render::blocks::luminances;
 use crate::stats::Estimate;
+use crate::stats::blocks::{EDGE, members};
 
 /// Level of an interval's miss.
 const LEVEL: f64 = 0.05;

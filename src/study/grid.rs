@@ -1,6 +1,7 @@
 //! The points of a study: every combination of the values of its axes.
 
-use super::axis::{Axis, Key};
+use super::axis::Axis;
+use crate::chart::Key;
 
 /// One axis as abscissa, the others as curves.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -5,8 +5,8 @@ use std::fs::{File, OpenOptions};
 use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::axis::Key;
-use super::row::{self, Row, TableError};
+use crate::chart::Key;
+use crate::chart::row::{self, Row, TableError};
 
 /// What names a render within its study.
 pub type Name = ([String; Key::ALL.len()], u32);

@@ -1,33 +1,26 @@
-//! Comparisons: of pictures with pictures and with truths, and of methods with each other.
+//! Error over samples and seconds, and whether renders agree with references and their error bars
+//! with their errors.
 //!
 //! A study ([`run`]) renders every point of a [`grid`] of choices several times with independent
-//! seeds, compares each render with a [`mod@reference`], and keeps one [`row`] of each in a
-//! [`journal`]; [`budget`] sees to it that this fits into the time there is.
+//! seeds, compares each render with a [`mod@reference`], and keeps one [`Row`](crate::chart::Row)
+//! of each in a [`journal`]; [`budget`] sees to it that this fits into the time there is.
 
 pub mod agreement;
 pub mod axis;
 pub mod budget;
-pub mod charts;
 pub mod choice;
 pub mod clock;
-pub mod compare;
 pub mod coverage;
-pub mod failures;
-pub mod figure;
-pub mod finders;
 pub mod grid;
 pub mod journal;
 pub mod measure;
 pub mod own;
-pub mod raster;
 pub mod record;
 pub mod reference;
 pub mod report;
-pub mod row;
 pub mod run;
 pub mod seeds;
 pub mod subject;
-pub mod summary;
 pub mod work;
 
 use std::path::PathBuf;

@@ -7,12 +7,10 @@ use base64::engine::general_purpose::STANDARD;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder as _};
 
-use super::figure::Figure;
 use super::reference::Reference;
-use super::row::Row;
 use super::run::{Request, Study};
-use super::summary::{Curve, Mean, Point, best};
 use super::work::picture_name;
+use crate::chart::{Curve, Figure, Mean, Point, Row, best};
 use crate::film::{exr, png};
 use crate::stats::metrics::{RELMSE_EPSILON, mean};
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use super::StudyError;
-use super::axis::{Axis, Key};
+use super::axis::Axis;
 use super::budget;
 use super::choice::{self, Choice, Found};
 use super::clock::Clock;
@@ -12,12 +12,12 @@ use super::grid::Grid;
 use super::journal::Journal;
 use super::record::Record;
 use super::reference::Reference;
-use super::row::Row;
 use super::subject::{Ready, Subject};
 use super::work::{Timed, Work};
+use crate::chart::Key;
+use crate::chart::Row;
 use crate::film::{provenance, whole};
 use crate::render::memory;
-use crate::scene::SamplerKind;
 
 /// What is asked for.
 #[derive(Debug, Clone)]
@@ -143,7 +143,7 @@ pub fn run(request: &Request, watch: &mut dyn Watch) -> Result<Study, StudyError
 /// The axes asked for; the samplers where none is.
 fn axes(request: &Request, base: &Ready) -> Result<Vec<Axis>, StudyError> {
     let mut axes = request.axes.clone();
-    let centre = base.scene.image.sampler == SamplerKind::Center;
+    let centre = base.scene.image.sampler.is_centred();
     if axes.is_empty() && !centre {
         axes.push(Axis {
             key: Key::Sampler,

@@ -4,9 +4,9 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use super::axis::Key;
 use super::grid::Point;
 use super::seeds::seed;
+use crate::chart::Key;
 use crate::plan::choose::Precision;
 use crate::plan::{Plan, PlanError};
 use crate::render::tile::Window;

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use super::StudyError;
-use super::axis::Key;
 use super::budget::{self, Cost, Estimated};
 use super::choice::{self, Found};
 use super::clock::Clock;
@@ -12,9 +11,10 @@ use super::journal::Journal;
 use super::measure::measure;
 use super::own::{self, Own};
 use super::reference::Reference;
-use super::row::Row;
 use super::run::Request;
 use super::subject::Ready;
+use crate::chart::Key;
+use crate::chart::Row;
 use crate::film::{Picture, exr, names};
 use crate::render::Rendered;
 

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use etalon::compare::{Judgement, Metrics};
 use etalon::stats::metrics::Metric;
-use etalon::study::compare::{Judgement, Metrics};
 
 use super::{Report, With, score};
 

@@ -5,7 +5,6 @@ use std::time::Instant;
 use etalon::plan::Plan;
 use etalon::render::goal::{Chosen, Goal, Target, choose};
 use etalon::render::{Instructions, Request, render};
-use etalon::scene::SamplerKind;
 use etalon::study::seeds::seed;
 
 use super::super::args::Render;
@@ -37,7 +36,7 @@ pub fn aim(
     let mut failed = None;
     let mut watch = Watch::new(job, None, !arguments.quiet);
     let base = job.scene.image.seed;
-    let strata = job.scene.image.sampler == SamplerKind::Stratified;
+    let strata = job.scene.image.sampler.needs_count();
     let chosen = choose(
         goal,
         job.window.pixels(),

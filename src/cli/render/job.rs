@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use etalon::plan::Plan;
 use etalon::render::bins::BinGrid;
 use etalon::render::tile::Window;
-use etalon::scene::{self, SamplerKind, Scene};
+use etalon::scene::{self, Scene};
 
 use super::super::args::Render;
 use super::super::error::CommandError;
@@ -39,7 +39,7 @@ impl Job {
         // With a wanted error pilots choose the samples, before the time counts.
         let open = arguments.time.is_some() && arguments.target_error.is_none();
         if open && !arguments.sets_spp() {
-            if scene.image.sampler == SamplerKind::Stratified {
+            if scene.image.sampler.needs_count() {
                 return Err(CommandError::TimeForStrata);
             }
             scene.image.spp = MOST_SAMPLES;

@@ -7,7 +7,6 @@ use etalon::film::{Attribute, Channel, Picture, names};
 use etalon::plan::choose::Precision;
 use etalon::plan::explain;
 use etalon::render::Instructions;
-use etalon::scene::SamplerKind;
 
 use super::super::args::Render;
 use super::super::error::CommandError;
@@ -105,7 +104,7 @@ fn further(
     text("instructions", instructions.name().to_owned());
     text("rungs", rungs(outcome, job));
     let planned = job.scene.image.spp;
-    if rendered.samples < planned && job.scene.image.sampler == SamplerKind::Stratified {
+    if rendered.samples < planned && job.scene.image.sampler.needs_count() {
         text("sppPlanned", planned.to_string());
     }
     if let Some(error) = arguments.target_error {

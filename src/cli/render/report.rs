@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 
 use etalon::render::Rendered;
 use etalon::render::goal::{Chosen, Goal, Target, reached};
-use etalon::scene::SamplerKind;
 
 use super::super::args::Render;
 use super::super::quoted;
@@ -80,7 +79,7 @@ pub fn lines(arguments: &Render, job: &Job, outcome: &Outcome<'_>) -> String {
 /// The samples reached. Strata are cut for a number of samples, and stay cut for it.
 fn count(job: &Job, rendered: &Rendered) -> String {
     let (done, planned) = (rendered.samples, job.scene.image.spp);
-    if done < planned && job.scene.image.sampler == SamplerKind::Stratified {
+    if done < planned && job.scene.image.sampler.needs_count() {
         format!("{done} spp (of strata for {planned})")
     } else {
         format!("{done} spp")

@@ -6,10 +6,10 @@
 use glam::DVec3;
 
 use crate::math::lanes::{Lanes, Scalar, inlined};
+use crate::math::ray::Ray;
 use crate::math::vec3::Vec3;
 use crate::sample::sequence::CameraSample;
 use crate::sample::warp::square_to_disk;
-use crate::shape::Ray;
 
 /// Position, direction and optics of the camera.
 #[derive(Debug, Clone, Copy, PartialEq)]

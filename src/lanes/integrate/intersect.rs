@@ -7,11 +7,12 @@ use super::many::{self, candidates};
 use super::model::Model;
 use super::pool::each;
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
+use crate::math::ray::Ray;
 use crate::math::vec3::Vec3;
 use crate::shape::implicit::placed::ImplicitTally;
-use crate::shape::lanes::implicit::{LaneImplicit, StartSign};
+use crate::shape::lanes::implicit::{FieldQuestion, LaneImplicit, StartSign};
 use crate::shape::lanes::{Enclosure, LaneRay, Span};
-use crate::shape::resolve::Departure;
+use crate::shape::resolve::{Departure, Doubt};
 use crate::shape::{ShapeKind, Tally};
 
 /// Marks rays that hit or leave nothing.
@@ -58,6 +59,33 @@ impl<L: Lanes> Leaving<L> {
         StartSign {
             on: self.object.same(l.int(object)),
             inward: self.inward,
+        }
+    }
+}
+
+/// Rays and where they start.
+#[derive(Clone, Copy)]
+pub(super) struct Rays<'a, L: Lanes> {
+    /// The rays.
+    pub ray: &'a LaneRay<L>,
+    /// What they leave.
+    pub leaving: &'a Leaving<L>,
+}
+
+impl<L: Lanes> Rays<'_, L> {
+    /// Lane `i`, as the ladder is asked about it.
+    #[inline(always)]
+    fn doubt<'c>(&self, l: L, i: usize, candidates: Option<&'c [u32]>) -> Doubt<'c> {
+        Doubt {
+            candidates,
+            ray: Ray {
+                origin: lane_vector(l, self.ray.origin, i),
+                direction: lane_vector(l, self.ray.direction, i),
+            },
+            departure: Departure {
+                object: l.int_lane(self.leaving.object, i),
+                inward: self.leaving.inward.bits() >> i & 1 == 1,
+            },
         }
     }
 }
@@ -163,14 +191,6 @@ pub fn lane_vector<L: Lanes>(l: L, v: Vec3<L::Real>, i: usize) -> DVec3 {
     )
 }
 
-#[inline(always)]
-fn departure<L: Lanes>(l: L, leaving: &Leaving<L>, i: usize) -> Departure {
-    Departure {
-        object: l.int_lane(leaving.object, i),
-        inward: leaving.inward.bits() >> i & 1 == 1,
-    }
-}
-
 /// The closest hits on implicit surfaces, whose finders answer with a distance or not at all.
 #[derive(Clone, Copy)]
 pub(super) struct FieldHits<L: Lanes> {
@@ -178,6 +198,8 @@ pub(super) struct FieldHits<L: Lanes> {
     pub t: L::Real,
     /// Part; [`NOTHING`] at first.
     pub part: L::Int,
+    /// What decided.
+    pub tally: ImplicitTally,
 }
 
 impl<L: Lanes> FieldHits<L> {
@@ -188,12 +210,16 @@ impl<L: Lanes> FieldHits<L> {
         l: L,
         model: &Model<L::Scalar>,
         (object, implicit): (u32, &LaneImplicit<L::Scalar>),
-        (ray, leaving): (&LaneRay<L>, &Leaving<L>),
-        asked: L::Mask,
-        tally: &mut ImplicitTally,
+        rays: Rays<'_, L>,
+        active: L::Mask,
     ) {
-        let start = leaving.start_sign(l, object);
-        let (t, found) = implicit.first_hit(l, ray, start, self.t, asked, tally);
+        let question = FieldQuestion {
+            ray: rays.ray,
+            start: rays.leaving.start_sign(l, object),
+            limit: self.t,
+            active,
+        };
+        let (t, found) = implicit.first_hit(l, &question, &mut self.tally);
         self.t = l.select(found, t, self.t);
         let part = l.int(model.parts.first[object as usize]);
         self.part = l.select_int(found, part, self.part);
@@ -210,8 +236,6 @@ pub(super) struct Search<L: Lanes> {
     pub rival: L::Real,
     /// Hits on implicit surfaces that were asked on the way.
     pub fields: FieldHits<L>,
-    /// What decided those.
-    pub tally: ImplicitTally,
 }
 
 impl<L: Lanes> Search<L> {
@@ -228,8 +252,8 @@ impl<L: Lanes> Search<L> {
             fields: FieldHits {
                 t: infinite,
                 part: l.int(NOTHING),
+                tally: ImplicitTally::default(),
             },
-            tally: ImplicitTally::default(),
         }
     }
 
@@ -246,14 +270,13 @@ impl<L: Lanes> Search<L> {
         l: L,
         model: &Model<L::Scalar>,
         k: u32,
-        ray: &LaneRay<L>,
-        leaving: &Leaving<L>,
+        rays: Rays<'_, L>,
         asked: L::Mask,
     ) {
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
-        let asked = Asked::new(l, l.int(k), kind, leaving, asked);
-        let span = shape.span(l, ray, asked.all, self.best.high);
+        let asked = Asked::new(l, l.int(k), kind, rays.leaving, asked);
+        let span = shape.span(l, rays.ray, asked.all, self.best.high);
         if !asked.met(&span).any() {
             return;
         }
@@ -281,18 +304,14 @@ impl<L: Lanes> Search<L> {
         l: L,
         model: &Model<L::Scalar>,
         k: u32,
-        ray: &LaneRay<L>,
-        leaving: &Leaving<L>,
+        rays: Rays<'_, L>,
         asked: L::Mask,
     ) {
         l.vectorize(
             #[inline(always)]
             || match model.implicit(k) {
-                Some(implicit) => {
-                    let (rays, tally) = ((ray, leaving), &mut self.tally);
-                    self.fields.ask(l, model, (k, implicit), rays, asked, tally);
-                }
-                None => self.ask(l, model, k, ray, leaving, asked),
+                Some(implicit) => self.fields.ask(l, model, (k, implicit), rays, asked),
+                None => self.ask(l, model, k, rays, asked),
             },
         );
     }
@@ -311,9 +330,10 @@ pub fn nearest<L: Lanes>(
     l.vectorize(
         #[inline(always)]
         || {
+            let rays = Rays { ray, leaving };
             let search = match &model.hierarchy {
-                None => list::search(l, model, &model.list, ray, leaving, active),
-                Some(many) => many::search(l, model, many, ray, leaving, active),
+                None => list::search(l, model, &model.list, rays, active),
+                Some(many) => many::search(l, model, many, rays, active),
             };
             let high = search.best.high;
             let mut best = Nearest {
@@ -324,14 +344,9 @@ pub fn nearest<L: Lanes>(
             let unsure = active & search.rival.le(high) & search.rival.lt(l.real(f64::INFINITY));
             rungs.undecided += u64::from(unsure.bits().count_ones());
             for i in each(unsure.bits()) {
-                let candidates = candidates(l, model, ray, leaving, i, l.lane(high, i));
-                let found = model.resolver.nearest(
-                    candidates.as_deref(),
-                    lane_vector(l, ray.origin, i),
-                    lane_vector(l, ray.direction, i),
-                    departure(l, leaving, i),
-                    &mut rungs.ladder,
-                );
+                let candidates = candidates(l, model, rays, i, l.lane(high, i));
+                let doubt = rays.doubt(l, i, candidates.as_deref());
+                let found = model.resolver.nearest(&doubt, &mut rungs.ladder);
                 let (t, part) = found.map_or((f64::INFINITY, NOTHING), |found| {
                     (
                         found.t,
@@ -341,24 +356,17 @@ pub fn nearest<L: Lanes>(
                 best.t = l.with_lane(best.t, i, L::Scalar::from_f64(t));
                 best.part = l.with_int_lane(best.part, i, part);
             }
-            rungs.implicit = rungs.implicit.joined(search.tally);
-            let mut fields = FieldHits {
-                t: best.t,
-                part: best.part,
-            };
+            let mut fields = search.fields;
             if model.hierarchy.is_none() {
+                (fields.t, fields.part) = (best.t, best.part);
                 for (object, implicit) in &model.implicits {
-                    let tally = &mut rungs.implicit;
-                    let asked = (*object, implicit);
-                    fields.ask(l, model, asked, (ray, leaving), active, tally);
+                    fields.ask(l, model, (*object, implicit), rays, active);
                 }
-            } else {
-                let closer = search.fields.t.lt(best.t);
-                fields.t = l.select(closer, search.fields.t, best.t);
-                fields.part = l.select_int(closer, search.fields.part, best.part);
             }
-            best.t = fields.t;
-            best.part = fields.part;
+            let closer = fields.t.lt(best.t);
+            best.t = l.select(closer, fields.t, best.t);
+            best.part = l.select_int(closer, fields.part, best.part);
+            rungs.implicit = rungs.implicit.joined(fields.tally);
             best
         },
     )
@@ -375,18 +383,23 @@ pub struct Shadow<L: Lanes> {
     pub except: L::Int,
 }
 
-/// Which shadow rays are surely blocked, and which may be.
-pub(super) struct Blocks<L: Lanes> {
+/// Which shadow rays are surely blocked, and which may be, before they end.
+pub(super) struct Blocks<'a, L: Lanes> {
+    pub shadow: &'a Shadow<L>,
+    pub rays: Rays<'a, L>,
     pub blocked: L::Mask,
     pub doubtful: L::Mask,
     /// What decided about the implicit surfaces that were asked on the way.
     pub tally: ImplicitTally,
 }
 
-impl<L: Lanes> Blocks<L> {
+impl<'a, L: Lanes> Blocks<'a, L> {
     #[inline(always)]
-    pub fn new(l: L) -> Self {
+    pub fn new(l: L, shadow: &'a Shadow<L>, leaving: &'a Leaving<L>) -> Self {
+        let ray = &shadow.ray;
         Self {
+            shadow,
+            rays: Rays { ray, leaving },
             blocked: l.mask(false),
             doubtful: l.mask(false),
             tally: ImplicitTally::default(),
@@ -395,29 +408,23 @@ impl<L: Lanes> Blocks<L> {
 
     /// Asks one object, for the lanes in `asked`.
     #[inline(always)]
-    pub fn ask(
-        &mut self,
-        l: L,
-        model: &Model<L::Scalar>,
-        k: u32,
-        shadow: &Shadow<L>,
-        leaving: &Leaving<L>,
-        asked: L::Mask,
-    ) {
+    pub fn ask(&mut self, l: L, model: &Model<L::Scalar>, k: u32, asked: L::Mask) {
+        let Shadow { ray, limit, except } = self.shadow;
         let shape = &model.shapes[k as usize];
         let Some(kind) = shape.kind else { return };
-        let asked = asked & !shadow.except.same(l.int(k));
-        let asked = Asked::new(l, l.int(k), kind, leaving, asked);
-        let span = shape.span(l, &shadow.ray, asked.all, shadow.limit);
+        let asked = asked & !except.same(l.int(k));
+        let asked = Asked::new(l, l.int(k), kind, self.rays.leaving, asked);
+        let span = shape.span(l, ray, asked.all, *limit);
         if !asked.met(&span).any() {
             return;
         }
-        self.take(&candidate(l, &span, &asked), shadow.limit);
+        self.take(&candidate(l, &span, &asked));
     }
 
     /// Takes a crossing into account.
     #[inline(always)]
-    pub fn take(&mut self, c: &Candidate<L>, limit: L::Real) {
+    pub fn take(&mut self, c: &Candidate<L>) {
+        let limit = self.shadow.limit;
         self.blocked = self.blocked | (c.certain & c.at.high.lt(limit));
         self.doubtful = self.doubtful | (c.possible & c.at.low.lt(limit));
     }
@@ -428,33 +435,28 @@ impl<L: Lanes> Blocks<L> {
         &mut self,
         l: L,
         (object, implicit): (u32, &LaneImplicit<L::Scalar>),
-        shadow: &Shadow<L>,
-        leaving: &Leaving<L>,
         asked: L::Mask,
     ) {
-        let start = leaving.start_sign(l, object);
-        let wanted = asked & !self.blocked & !shadow.except.same(l.int(object));
-        let (ray, limit) = (&shadow.ray, shadow.limit);
-        let (_, found) = implicit.first_hit(l, ray, start, limit, wanted, &mut self.tally);
-        self.blocked = self.blocked | (found & wanted);
+        let Shadow { ray, limit, except } = self.shadow;
+        let active = asked & !self.blocked & !except.same(l.int(object));
+        let question = FieldQuestion {
+            ray,
+            start: self.rays.leaving.start_sign(l, object),
+            limit: *limit,
+            active,
+        };
+        let (_, found) = implicit.first_hit(l, &question, &mut self.tally);
+        self.blocked = self.blocked | (found & active);
     }
 
     /// Asks any object, as one copy of code, for the hierarchy.
     #[inline(never)]
-    pub fn ask_alone(
-        &mut self,
-        l: L,
-        model: &Model<L::Scalar>,
-        k: u32,
-        shadow: &Shadow<L>,
-        leaving: &Leaving<L>,
-        asked: L::Mask,
-    ) {
+    pub fn ask_alone(&mut self, l: L, model: &Model<L::Scalar>, k: u32, asked: L::Mask) {
         l.vectorize(
             #[inline(always)]
             || match model.implicit(k) {
-                Some(implicit) => self.ask_field(l, (k, implicit), shadow, leaving, asked),
-                None => self.ask(l, model, k, shadow, leaving, asked),
+                Some(implicit) => self.ask_field(l, (k, implicit), asked),
+                None => self.ask(l, model, k, asked),
             },
         );
     }
@@ -476,10 +478,12 @@ pub fn occluded<L: Lanes>(
     l.vectorize(
         #[inline(always)]
         || {
-            let mut blocks = match &model.hierarchy {
-                None => list::blocks(l, model, &model.occluders, shadow, leaving, active),
-                Some(many) => many::blocks(l, model, many, shadow, leaving, active),
-            };
+            let mut blocks = Blocks::new(l, shadow, leaving);
+            match &model.hierarchy {
+                None => list::blocks(l, model, &model.occluders, &mut blocks, active),
+                Some(many) => many::blocks(l, model, many, &mut blocks, active),
+            }
+            let rays = blocks.rays;
             rungs.rays += u64::from(active.bits().count_ones());
             let unsure = active & blocks.doubtful & !blocks.blocked;
             rungs.undecided += u64::from(unsure.bits().count_ones());
@@ -488,22 +492,16 @@ pub fn occluded<L: Lanes>(
                 // The limit is a rounded distance: a few units in its last place are its own noise.
                 let end = l.lane(shadow.limit, i).to_f64() * (1.0 - 8.0 * L::Scalar::ROUNDOFF);
                 let limit = l.lane(shadow.limit, i);
-                let candidates = candidates(l, model, &shadow.ray, leaving, i, limit);
-                let hidden = model.resolver.occluded(
-                    candidates.as_deref(),
-                    lane_vector(l, shadow.ray.origin, i),
-                    lane_vector(l, shadow.ray.direction, i),
-                    end,
-                    departure(l, leaving, i),
-                    l.int_lane(shadow.except, i),
-                    &mut rungs.ladder,
-                );
+                let candidates = candidates(l, model, rays, i, limit);
+                let doubt = rays.doubt(l, i, candidates.as_deref());
+                let (except, tally) = (l.int_lane(shadow.except, i), &mut rungs.ladder);
+                let hidden = model.resolver.occluded(&doubt, end, except, tally);
                 answers |= u32::from(hidden) << i;
             }
             blocks.blocked = blocks.blocked | l.mask_from_bits(answers);
             if model.hierarchy.is_none() {
                 for (object, implicit) in model.implicits.iter().filter(|(k, _)| model.hides(*k)) {
-                    blocks.ask_field(l, (*object, implicit), shadow, leaving, active);
+                    blocks.ask_field(l, (*object, implicit), active);
                 }
             }
             rungs.implicit = rungs.implicit.joined(blocks.tally);

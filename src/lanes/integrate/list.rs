@@ -1,13 +1,13 @@
 //! A few objects, asked by whole packets one after the other; of balls each ray asks those that it
 //! comes near.
 
-use super::intersect::{Asked, Blocks, Leaving, NOTHING, Search, Shadow, candidate};
+use super::intersect::{Asked, Blocks, Leaving, NOTHING, Rays, Search, candidate};
 use super::model::Model;
 use crate::math::lanes::{Int, Lanes, Mask, Scalar};
 use crate::math::lookup::SMALL;
 use crate::shape::ShapeKind;
+use crate::shape::lanes::LaneShape;
 use crate::shape::lanes::balls::Balls;
-use crate::shape::lanes::{LaneRay, LaneShape};
 
 /// From how many balls on it pays to sort out first which rays come near which of them.
 const SEVERAL: usize = 3;
@@ -62,13 +62,13 @@ pub(super) fn search<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
     list: &List<L::Scalar>,
-    ray: &LaneRay<L>,
-    leaving: &Leaving<L>,
+    rays: Rays<'_, L>,
     active: L::Mask,
 ) -> Search<L> {
+    let Rays { ray, leaving } = rays;
     let mut search = Search::new(l);
     for &k in &list.alone {
-        search.ask(l, model, k, ray, leaving, active);
+        search.ask(l, model, k, rays, active);
     }
     for Group { balls, parts } in &list.groups {
         let mut places = balls.near(l, ray, [outward(l, leaving)], search.best.high);
@@ -87,19 +87,18 @@ pub(super) fn search<L: Lanes>(
     search
 }
 
-/// Which of the active shadow rays objects of a list block.
+/// Adds which of the active shadow rays objects of a list block.
 #[inline(always)]
 pub(super) fn blocks<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
     list: &List<L::Scalar>,
-    shadow: &Shadow<L>,
-    leaving: &Leaving<L>,
+    blocks: &mut Blocks<'_, L>,
     active: L::Mask,
-) -> Blocks<L> {
-    let mut blocks = Blocks::new(l);
+) {
+    let (shadow, leaving) = (blocks.shadow, blocks.rays.leaving);
     for &k in &list.alone {
-        blocks.ask(l, model, k, shadow, leaving, active);
+        blocks.ask(l, model, k, active);
     }
     for Group { balls, .. } in &list.groups {
         let left_out = [outward(l, leaving), shadow.except];
@@ -113,10 +112,9 @@ pub(super) fn blocks<L: Lanes>(
             let objects = l.lookup_int(&balls.objects, place);
             let asked = Asked::new(l, objects, ShapeKind::Sphere, leaving, asked);
             let found = candidate(l, &balls.span_of(l, place, &shadow.ray), &asked);
-            blocks.take(&found, shadow.limit);
+            blocks.take(&found);
         }
     }
-    blocks
 }
 
 /// The convex object that a ray leaves outward, and so does not meet again; [`NOTHING`] for others.

@@ -4,7 +4,7 @@
 //! one, and the lanes are boxes, or balls: the answers for a ray depend neither on its neighbours
 //! nor on their number.
 
-use super::intersect::{Asked, Blocks, Candidate, FieldHits, Leaving, Search, Shadow, candidate};
+use super::intersect::{Asked, Blocks, Candidate, FieldHits, Leaving, Rays, Search, candidate};
 use super::model::{Many, Model};
 use super::pool::{WIDEST, array, each, int_array};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
@@ -13,11 +13,11 @@ use crate::shape::ShapeKind;
 use crate::shape::hierarchy::{BoxRay, Child, Descent, WIDTH};
 use crate::shape::implicit::placed::ImplicitTally;
 use crate::shape::lanes::balls::Balls;
-use crate::shape::lanes::implicit::LaneImplicit;
+use crate::shape::lanes::implicit::{FieldQuestion, LaneImplicit};
 use crate::shape::lanes::{Enclosure, LaneRay};
 
 /// A packet's rays as arrays, to be taken one by one.
-struct Rays<T> {
+struct Stored<T> {
     origin: [[T; WIDEST]; 3],
     direction: [[T; WIDEST]; 3],
     inverse: [[T; WIDEST]; 3],
@@ -27,13 +27,12 @@ struct Rays<T> {
     inward: u32,
 }
 
-impl<T: Scalar> Rays<T> {
+impl<T: Scalar> Stored<T> {
     #[inline(always)]
     fn new<L: Lanes<Scalar = T>>(
         l: L,
-        ray: &LaneRay<L>,
+        Rays { ray, leaving }: Rays<'_, L>,
         inverse: Vec3<L::Real>,
-        leaving: &Leaving<L>,
     ) -> Self {
         let (o, d) = (ray.origin, ray.direction);
         Self {
@@ -152,9 +151,13 @@ impl<N: Lanes> Lone<N> {
         n.vectorize(
             #[inline(always)]
             || {
-                let start = self.leaving.start_sign(n, object);
-                let (limit, first) = (n.splat(limit), n.mask_from_bits(1));
-                let (t, found) = implicit.first_hit(n, &self.ray, start, limit, first, tally);
+                let question = FieldQuestion {
+                    ray: &self.ray,
+                    start: self.leaving.start_sign(n, object),
+                    limit: n.splat(limit),
+                    active: n.mask_from_bits(1),
+                };
+                let (t, found) = implicit.first_hit(n, &question, tally);
                 found.any().then(|| n.lane(t, 0))
             },
         )
@@ -221,8 +224,7 @@ pub(super) fn search<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
     many: &Many<L::Scalar>,
-    ray: &LaneRay<L>,
-    leaving: &Leaving<L>,
+    rays: Rays<'_, L>,
     active: L::Mask,
 ) -> Search<L> {
     l.vectorize(
@@ -230,8 +232,9 @@ pub(super) fn search<L: Lanes>(
         || {
             let mut search = Search::new(l);
             for &k in &many.broad {
-                search.ask_alone(l, model, k, ray, leaving, active);
+                search.ask_alone(l, model, k, rays, active);
             }
+            let ray = rays.ray;
             let inverse = ray.direction.reciprocal(l);
             let met = many.boxes.all.meets(l, ray.origin, inverse, search.limit());
             let met = (active & met).bits();
@@ -244,9 +247,9 @@ pub(super) fn search<L: Lanes>(
             let mut rival = array(l, search.rival);
             let mut field_t = array(l, search.fields.t);
             let mut field_part = int_array(l, search.fields.part);
-            let mut tally = search.tally;
+            let mut tally = search.fields.tally;
             let n = l.narrow();
-            let rays = Rays::new(l, ray, inverse, leaving);
+            let stored = Stored::new(l, rays, inverse);
             let mut descent = Descent::new();
             for i in each(met) {
                 let mut closest = Closest {
@@ -258,7 +261,14 @@ pub(super) fn search<L: Lanes>(
                     tally,
                 };
                 descent.restart();
-                closest_along(n, model, many, &rays.lone(n, i), &mut descent, &mut closest);
+                closest_along(
+                    n,
+                    model,
+                    many,
+                    &stored.lone(n, i),
+                    &mut descent,
+                    &mut closest,
+                );
                 low[i] = closest.low;
                 high[i] = closest.high;
                 part[i] = closest.part;
@@ -276,8 +286,8 @@ pub(super) fn search<L: Lanes>(
                 fields: FieldHits {
                     t: l.load(&field_t),
                     part: l.load_int(&field_part),
+                    tally,
                 },
-                tally,
             }
         },
     )
@@ -329,39 +339,38 @@ fn closest_along<N: Lanes>(
     }
 }
 
-/// Which of the active shadow rays are blocked.
+/// Adds which of the active shadow rays are blocked.
 #[inline(never)]
 pub(super) fn blocks<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
     many: &Many<L::Scalar>,
-    shadow: &Shadow<L>,
-    leaving: &Leaving<L>,
+    blocks: &mut Blocks<'_, L>,
     active: L::Mask,
-) -> Blocks<L> {
+) {
     l.vectorize(
         #[inline(always)]
         || {
-            let mut blocks = Blocks::new(l);
+            let shadow = blocks.shadow;
             for &k in many.broad.iter().filter(|k| many.hides[**k as usize]) {
-                blocks.ask_alone(l, model, k, shadow, leaving, active);
+                blocks.ask_alone(l, model, k, active);
             }
             let inverse = shadow.ray.direction.reciprocal(l);
             let (origin, limit) = (shadow.ray.origin, shadow.limit);
             let met = many.boxes.all.meets(l, origin, inverse, limit);
             let met = (active & met & !blocks.blocked).bits();
             if met == 0 {
-                return blocks;
+                return;
             }
             let n = l.narrow();
-            let rays = Rays::new(l, &shadow.ray, inverse, leaving);
+            let stored = Stored::new(l, blocks.rays, inverse);
             let limits = array(l, shadow.limit);
             let excepted = int_array(l, shadow.except);
             let mut descent = Descent::new();
             let (mut blocked, mut doubtful) = (0, 0);
             for i in each(met) {
                 descent.restart();
-                let lone = rays.lone(n, i);
+                let lone = stored.lone(n, i);
                 let end = End {
                     limit: limits[i],
                     except: n.int(excepted[i]),
@@ -372,7 +381,6 @@ pub(super) fn blocks<L: Lanes>(
             }
             blocks.blocked = blocks.blocked | l.mask_from_bits(blocked);
             blocks.doubtful = blocks.doubtful | l.mask_from_bits(doubtful);
-            blocks
         },
     )
 }
@@ -464,14 +472,14 @@ fn block_along<N: Lanes>(
 pub(super) fn candidates<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
-    ray: &LaneRay<L>,
-    leaving: &Leaving<L>,
+    rays: Rays<'_, L>,
     i: usize,
     limit: L::Scalar,
 ) -> Option<Vec<u32>> {
     let many = model.hierarchy.as_ref()?;
     let n = l.narrow();
-    let lone = Rays::new(l, ray, ray.direction.reciprocal(l), leaving).lone(n, i);
+    let inverse = rays.ray.direction.reciprocal(l);
+    let lone = Stored::new(l, rays, inverse).lone(n, i);
     let before = |c: &Candidate<L::Narrow>| c.possible & c.at.low.le(n.splat(limit));
     let mut descent = Descent::new();
     descent.restart();

@@ -138,7 +138,8 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             self.multiply_by(l, diffuse, surface.spectrum);
             sequence.pair(l, self.id, Slot::Bsdf, self.depth)
         } else {
-            let [light, bsdf] = sequence.two_pairs(l, self.id, Slot::Light, Slot::Bsdf, self.depth);
+            let [light, bsdf] =
+                sequence.two_pairs(l, self.id, [Slot::Light, Slot::Bsdf], self.depth);
             let receiver = Receiver {
                 point: surface.point,
                 normal,

@@ -2,6 +2,7 @@
 
 mod cube;
 mod cylinder;
+mod emitting;
 mod mapped;
 mod rectangle;
 mod small;
@@ -15,6 +16,7 @@ use crate::sample::warp::square_to_disk;
 
 pub use cube::CubeLight;
 pub use cylinder::CylinderLight;
+pub use emitting::of_shape;
 pub use mapped::{MappedLight, cylinder_area, ellipsoid_area};
 pub use rectangle::RectangleLight;
 pub use small::SmallLights;

@@ -2,6 +2,10 @@
 
 use glam::DVec3;
 
+/// Largest relative error of an entry that products of rounded maps leave: rounded rotations are off by
+/// a few 2⁻⁵³ an entry and composed from at most a few dozen.
+pub const ROUNDED: f64 = 1e-13;
+
 /// x ↦ M x + t, with the columns of M and t as vectors; the f64 entries are exact by definition.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Affine {
@@ -70,4 +74,37 @@ impl Affine {
             r[2][0] * v.x + r[2][1] * v.y + r[2][2] * v.z,
         )
     }
+
+    /// Images of the axes.
+    pub fn columns(&self) -> [DVec3; 3] {
+        let r = &self.rows;
+        std::array::from_fn(|j| DVec3::new(r[0][j], r[1][j], r[2][j]))
+    }
+
+    /// Image of the origin.
+    pub fn translation(&self) -> DVec3 {
+        let r = &self.rows;
+        DVec3::new(r[0][3], r[1][3], r[2][3])
+    }
+
+    /// Whether the linear part is a rotation or reflection times a scale, up to [`ROUNDED`].
+    pub fn is_similarity(&self) -> bool {
+        let [a, _, c] = self.columns();
+        self.is_right_circular() && same_length(a, c)
+    }
+
+    /// Whether the map takes the canonical cylinder to a right circular one, up to [`ROUNDED`].
+    pub fn is_right_circular(&self) -> bool {
+        let [a, b, c] = self.columns();
+        same_length(a, b) && perpendicular(a, b) && perpendicular(b, c) && perpendicular(c, a)
+    }
+}
+
+/// Whether two vectors are perpendicular up to [`ROUNDED`].
+pub fn perpendicular(a: DVec3, b: DVec3) -> bool {
+    a.dot(b).abs() <= ROUNDED * a.length() * b.length()
+}
+
+fn same_length(a: DVec3, b: DVec3) -> bool {
+    (a.length() - b.length()).abs() <= ROUNDED * a.length()
 }

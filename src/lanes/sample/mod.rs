@@ -4,12 +4,19 @@
 //! of those and of the *name* of the dimension ([`Slot`]), so a sample can be computed alone, in
 //! any order, and leaving a dimension out moves no other.
 
+pub mod center;
 pub mod hash;
+pub mod independent;
+pub mod kind;
 pub mod mis;
 pub mod permute;
+pub mod replicates;
 pub mod sequence;
 pub mod sobol;
+pub mod stratified;
 pub mod warp;
+
+pub use kind::SamplerKind;
 
 use crate::math::lanes::Lanes;
 
@@ -45,39 +52,5 @@ impl Slot {
     pub fn at<L: Lanes>(self, l: L, depth: L::Int) -> L::Int {
         use crate::math::lanes::Int;
         depth.times(l.int(Self::STRIDE)).plus(l.int(self as u32))
-    }
-}
-
-/// The samplers by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SamplerKind {
-    /// Every number drawn on its own.
-    Independent,
-    /// Strata visited in a random order per pixel.
-    Stratified,
-    /// Owen-scrambled Sobol' points.
-    Sobol,
-    /// One ray through the pixel's centre.
-    Center,
-}
-
-impl SamplerKind {
-    /// All of them, the usual one first.
-    pub const ALL: [Self; 4] = [
-        Self::Sobol,
-        Self::Independent,
-        Self::Stratified,
-        Self::Center,
-    ];
-
-    /// The name in scene files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Independent => "independent",
-            Self::Stratified => "stratified",
-            Self::Sobol => "sobol",
-            Self::Center => "center",
-        }
     }
 }

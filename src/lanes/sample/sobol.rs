@@ -4,7 +4,105 @@
 //! 2020) on bit-reversed numbers, where "each digit depends on the more significant ones" becomes
 //! "each bit depends on the lower ones", which is what multiplication does.
 
+use super::Slot;
+use super::hash::mix;
+use super::kind::Sampler;
+use super::sequence::{CameraSample, Identity, Sequence};
 use crate::math::lanes::{Int, Lanes};
+
+/// Owen-scrambled Sobol' points.
+pub struct Sobol;
+
+impl Sampler for Sobol {
+    const NAME: &'static str = "sobol";
+    const WORDS: &'static str = "Sobol' points with Owen scrambling";
+
+    /// With its bits reversed, as the shuffle wants it.
+    #[inline(always)]
+    fn index<L: Lanes>(_l: L, index: L::Int) -> L::Int {
+        index.reversed()
+    }
+
+    /// Pixel, wavelength and lens are stratified together, as one point of five dimensions.
+    #[inline(always)]
+    fn camera<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
+        CameraSample {
+            pixel: [
+                coordinate(sequence, l, id, 0),
+                coordinate(sequence, l, id, 1),
+            ],
+            wavelength: coordinate(sequence, l, id, 2),
+            lens: if lens {
+                [
+                    coordinate(sequence, l, id, 3),
+                    coordinate(sequence, l, id, 4),
+                ]
+            } else {
+                [l.real(0.0); 2]
+            },
+        }
+    }
+
+    #[inline(always)]
+    fn single<L: Lanes>(
+        sequence: &Sequence,
+        l: L,
+        id: Identity<L>,
+        slot: Slot,
+        depth: L::Int,
+    ) -> L::Real {
+        let base = sequence.slot_seed(l, id, slot, depth);
+        l.uniform(first(l, shuffled(l, id.index, base), base))
+    }
+
+    #[inline(always)]
+    fn pair<L: Lanes>(
+        sequence: &Sequence,
+        l: L,
+        id: Identity<L>,
+        slot: Slot,
+        depth: L::Int,
+    ) -> [L::Real; 2] {
+        let base = sequence.slot_seed(l, id, slot, depth);
+        let index = shuffled(l, id.index, base);
+        let second = scrambled(
+            l,
+            digits(l, 1, index, 32),
+            mix(l, base.plus(l.int(0x02e5_be93))),
+        );
+        [l.uniform(first(l, index, base)), l.uniform(second)]
+    }
+}
+
+/// The first coordinate of a slot's points.
+#[inline(always)]
+fn first<L: Lanes>(l: L, index: L::Int, base: L::Int) -> L::Int {
+    scrambled(l, index, mix(l, base.plus(l.int(0x68bc_21eb))))
+}
+
+/// Slot and component of each dimension of a camera sample's point.
+const CAMERA: [(Slot, u32); DIMENSIONS] = [
+    (Slot::Pixel, 0),
+    (Slot::Pixel, 1),
+    (Slot::Wavelength, 0),
+    (Slot::Lens, 0),
+    (Slot::Lens, 1),
+];
+
+/// A coordinate of a camera sample's point.
+#[inline(always)]
+pub fn coordinate<L: Lanes>(
+    sequence: &Sequence,
+    l: L,
+    id: Identity<L>,
+    dimension: usize,
+) -> L::Real {
+    let (slot, component) = CAMERA[dimension];
+    let step = 0x9e37_79b9u32.wrapping_mul(2 * slot as u32 + component + 1);
+    let seed = mix(l, id.key.plus(l.int(step)));
+    let digits = digits(l, dimension, id.index.reversed(), sequence.bits);
+    l.uniform(scrambled(l, digits, seed))
+}
 
 /// Dimensions of the joint set of a camera sample: pixel x, y, wavelength, lens u, v.
 pub const DIMENSIONS: usize = 5;

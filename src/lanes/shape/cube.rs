@@ -6,7 +6,7 @@ use super::kind::{Canonical, Emitter, Question};
 use super::lanes::part::{Part, PartKind};
 use super::lanes::{self, Enclosure, LaneRay, LaneShape};
 use super::line::{LocalRay, Span};
-use super::slab::{Along, LaneSlab, Slab, cut, lane_slab, reach, slab};
+use super::slab::{Along, Coordinate, LaneSlab, Slab, cut, lane_slab, reach, slab};
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
 use crate::math::number::Number;
 use crate::math::vec3::Vec3;
@@ -28,13 +28,40 @@ impl Canonical for Cube {
         along.abs().element_sum()
     }
 
+    /// The last entry must not come after the first exit.
     fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
-        span(ray)
+        let mut span: Option<Span> = None;
+        for axis in 0..3 {
+            let next = match slab(ray, axis)? {
+                Slab::Crossed(next) => next,
+                Slab::Inside => continue,
+                Slab::Outside => return Some(None),
+            };
+            span = match span {
+                None => Some(next),
+                Some(current) => match cut(ray, current, &next)? {
+                    None => return Some(None),
+                    shorter => shorter,
+                },
+            };
+        }
+        Some(span)
     }
 
+    /// Three slabs (Kay and Kajiya 1986), each crossing with its bound; the cube is hit for certain
+    /// when the latest possible entry is before the earliest possible exit.
     #[inline(always)]
     fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
-        lane_span(l, question)
+        let Question {
+            shape, ray, asked, ..
+        } = *question;
+        let slabs = slabs(l, shape, ray);
+        let [x, y, z] = &slabs;
+        if (asked & (x.parallel | y.parallel | z.parallel)).any() {
+            return with_parallels(l, shape, ray);
+        }
+        let nowhere = l.mask(false);
+        joined(l, &slabs, nowhere, nowhere)
     }
 
     fn parts<T: Scalar>(shape: &LaneShape<T>) -> Vec<Part<T>> {
@@ -47,46 +74,17 @@ impl Canonical for Cube {
         local.abs().max_position() as u32
     }
 
+    /// The coordinate of the face made exact.
     #[inline(always)]
     fn snapped<L: Lanes>(l: L, local: Vec3<L::Real>) -> Vec3<L::Real> {
-        snapped(l, local)
+        let (on_x, on_y) = faces::<L>(local);
+        let one = l.real(1.0);
+        Vec3::new(
+            l.select(on_x, one.copysign(local.x), local.x),
+            l.select(on_y, one.copysign(local.y), local.y),
+            l.select(on_x | on_y, local.z, one.copysign(local.z)),
+        )
     }
-}
-
-/// The last entry must not come after the first exit.
-fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
-    let mut span: Option<Span> = None;
-    for axis in 0..3 {
-        let next = match slab(ray, axis)? {
-            Slab::Crossed(next) => next,
-            Slab::Inside => continue,
-            Slab::Outside => return Some(None),
-        };
-        span = match span {
-            None => Some(next),
-            Some(current) => match cut(ray, current, &next)? {
-                None => return Some(None),
-                shorter => shorter,
-            },
-        };
-    }
-    Some(span)
-}
-
-/// Three slabs (Kay and Kajiya 1986), each crossing with its bound; the cube is hit for certain
-/// when the latest possible entry is before the earliest possible exit.
-#[inline(always)]
-fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
-    let Question {
-        shape, ray, asked, ..
-    } = *question;
-    let slabs = slabs(l, shape, ray);
-    let [x, y, z] = &slabs;
-    if (asked & (x.parallel | y.parallel | z.parallel)).any() {
-        return with_parallels(l, shape, ray);
-    }
-    let nowhere = l.mask(false);
-    joined(l, &slabs, nowhere, nowhere)
 }
 
 /// The three slabs of the lines in local coordinates.
@@ -95,26 +93,28 @@ fn slabs<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> [Lan
     let axis = inlined(
         #[inline(always)]
         |i| {
-            let (o, d) = shape.inverse.row(l, i, ray.origin, ray.direction);
-            let (e, dd) = bounds(l, shape, ray, i);
-            lane_slab(l, o, d, e, dd)
+            let local = shape.inverse.row(l, i, ray.origin, ray.direction);
+            lane_slab(l, &coordinate(l, shape, ray, i, local))
         },
     );
     [axis(0), axis(1), axis(2)]
 }
 
-/// Bounds of the errors of local origin and direction.
+/// A local coordinate (origin, direction) with bounds of its errors.
 #[inline(always)]
-fn bounds<L: Lanes>(
+fn coordinate<L: Lanes>(
     l: L,
     shape: &LaneShape<L::Scalar>,
     ray: &LaneRay<L>,
     i: usize,
-) -> (L::Real, L::Real) {
-    (
-        shape.origin_error(l, ray, i),
-        l.splat(shape.direction_error[i]),
-    )
+    (origin, direction): (L::Real, L::Real),
+) -> Coordinate<L> {
+    Coordinate {
+        origin,
+        direction,
+        origin_error: shape.origin_error(l, ray, i),
+        direction_error: l.splat(shape.direction_error[i]),
+    }
 }
 
 /// The same where some line may run along a slab.
@@ -134,9 +134,9 @@ fn with_parallels<L: Lanes>(
             let reach = reach(l, shape, ray, o, d);
             let (mut lost, mut outside) = (l.mask(false), l.mask(false));
             let components = [(o.x, d.x), (o.y, d.y), (o.z, d.z)];
-            for (i, (slab, (o, d))) in slabs.iter_mut().zip(components).enumerate() {
-                let (e, dd) = bounds(l, shape, ray, i);
-                let along: Along<L> = slab.settle(l, o, d, e, dd, reach);
+            for (i, (slab, local)) in slabs.iter_mut().zip(components).enumerate() {
+                let coordinate = coordinate(l, shape, ray, i, local);
+                let along: Along<L> = slab.settle(l, &coordinate, reach);
                 lost = lost | along.lost;
                 outside = outside | along.outside;
             }
@@ -193,16 +193,4 @@ fn faces<L: Lanes>(local: Vec3<L::Real>) -> (L::Mask, L::Mask) {
     let (ax, ay, az) = (local.x.abs(), local.y.abs(), local.z.abs());
     let on_x = ax.ge(ay) & ax.ge(az);
     (on_x, !on_x & ay.ge(az))
-}
-
-/// The coordinate of the face made exact.
-#[inline(always)]
-fn snapped<L: Lanes>(l: L, local: Vec3<L::Real>) -> Vec3<L::Real> {
-    let (on_x, on_y) = faces::<L>(local);
-    let one = l.real(1.0);
-    Vec3::new(
-        l.select(on_x, one.copysign(local.x), local.x),
-        l.select(on_y, one.copysign(local.y), local.y),
-        l.select(on_x | on_y, local.z, one.copysign(local.z)),
-    )
 }

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::kind::{Canonical, Emitter, Question};
 use super::lanes::{self, Enclosure, LaneShape, LaneSurface};
 use super::line::{Crossing, Fraction, LocalRay, Span};
-use super::slab::{Along, Slab, cut, lane_slab, reach, slab};
+use super::slab::{Along, Coordinate, Slab, cut, lane_slab, reach, slab};
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
 use crate::math::number::{Number, dot};
 use crate::math::vec3::Vec3;
@@ -29,44 +29,148 @@ impl Canonical for Cylinder {
         along.truncate().length() + along.z.abs()
     }
 
+    /// The line's stretch inside x² + y² ≤ 1, cut by its stretch inside |z| ≤ 1.
     fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
-        span(ray)
+        let direction = &ray.direction[..2];
+        let a = dot(direction, direction);
+        if a.sign()? == Ordering::Equal {
+            return along_axis(ray);
+        }
+        if ray.discriminant(2, &a).sign()? == Ordering::Less {
+            return Some(None);
+        }
+        let side = Span {
+            near: Crossing::round(2, false),
+            far: Crossing::round(2, true),
+        };
+        match slab(ray, 2)? {
+            Slab::Crossed(caps) => cut(ray, side, &caps),
+            Slab::Inside => Some(Some(side)),
+            Slab::Outside => Some(None),
+        }
     }
 
+    /// The side as a circle about the foot of the perpendicular in the plane (bounds as for the
+    /// sphere, with √2 in place of √3), the caps as a slab.
     #[inline(always)]
     fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
-        lane_span(l, question)
+        let Question {
+            shape, ray, asked, ..
+        } = *question;
+        let u = <L::Scalar as Scalar>::ROUNDOFF;
+        let one = l.real(1.0);
+        let row = inlined(
+            #[inline(always)]
+            |i: usize| shape.inverse.row(l, i, ray.origin, ray.direction),
+        );
+        let ((ox, dx), (oy, dy), (oz, dz)) = (row(0), row(1), row(2));
+        let (o, d) = (Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
+        let (e0, dd) = shape.largest_errors(l, ray, 2);
+
+        let across = d.x.mul_add(d.x, d.y * d.y);
+        let inverse_square = one / across;
+        let inverse_length = inverse_square.sqrt();
+        let foot_t = -(o.x.mul_add(d.x, o.y * d.y) * inverse_square);
+        let (fx, fy) = (d.x.mul_add(foot_t, o.x), d.y.mul_add(foot_t, o.y));
+        let squared = fx.mul_add(fx, fy * fy);
+        let c = one - squared;
+        let e = foot_t.abs().mul_add(dd, e0);
+        let q = dd * inverse_length;
+        let relative = (q * q).mul_add(l.real(64.0), e.mul_add(l.real(8.0), l.real(8.0 * u)));
+        let c_error = (e * e).mul_add(l.real(16.0), relative * squared.max(one));
+        let root = c.max(l.real(0.0)).sqrt();
+        let half = root * inverse_length;
+        let along = q.mul_add(l.real(6.0), e * l.real(4.0));
+        let side_error = (c_error / root + along)
+            .mul_add(inverse_length, (foot_t.abs() + half) * l.real(9.0 * u));
+        let mut side_near = Enclosure::<L>::about(foot_t - half, side_error);
+        let mut side_far = Enclosure::<L>::about(foot_t + half, side_error);
+        let mut side_hit = c.gt(c_error);
+        let mut side_miss = c.lt(-c_error);
+        // Along the axis the relative error of the direction across it is unbounded.
+        let parallel = !across.sqrt().gt(dd * l.real(8.0));
+        if (parallel & asked).any() {
+            let drift = (across.sqrt() + dd * l.real(2.0))
+                .mul_add(reach(l, shape, ray, o, d), e0 * l.real(2.0))
+                * l.real(1.0 + 1e-6);
+            let radius = o.x.mul_add(o.x, o.y * o.y).sqrt();
+            let far = l.real(f64::INFINITY);
+            side_near = Enclosure {
+                low: l.select(parallel, -far, side_near.low),
+                high: l.select(parallel, -far, side_near.high),
+            };
+            side_far = Enclosure {
+                low: l.select(parallel, far, side_far.low),
+                high: l.select(parallel, far, side_far.high),
+            };
+            let inside = (radius + drift).lt(one);
+            let outside = (radius - drift).gt(one);
+            side_hit = (side_hit & !parallel) | (parallel & inside);
+            side_miss = (side_miss & !parallel) | (parallel & outside);
+        }
+
+        let height = Coordinate {
+            origin: o.z,
+            direction: d.z,
+            origin_error: shape.origin_error(l, ray, 2),
+            direction_error: l.splat(shape.direction_error[2]),
+        };
+        let mut caps = lane_slab(l, &height);
+        let nowhere = l.mask(false);
+        let mut along = Along::<L> {
+            lost: nowhere,
+            outside: nowhere,
+        };
+        if (caps.parallel & asked).any() {
+            along = caps.settle(l, &height, reach(l, shape, ray, o, d));
+        }
+        let near = Enclosure {
+            low: side_near.low.max(caps.near.low),
+            high: side_near.high.max(caps.near.high),
+        };
+        let far = Enclosure {
+            low: side_far.low.min(caps.far.low),
+            high: side_far.high.min(caps.far.high),
+        };
+        lanes::Span {
+            near,
+            far,
+            hit: side_hit & near.high.lt(far.low) & !along.lost & !along.outside,
+            miss: side_miss | along.outside | (side_hit & near.low.gt(far.high) & !along.lost),
+            parts: [l.int(0); 2],
+        }
     }
 
+    /// The canonical point moved onto side or cap.
     #[inline(always)]
     fn surface<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, p: Vec3<L::Real>) -> LaneSurface<L> {
-        surface(l, shape, p)
+        let local = shape.inverse.point(l, p);
+        let (cap, radius) = on_cap::<L>(local);
+        let zero = l.real(0.0);
+        let face = l.real(1.0).copysign(local.z);
+        let (x, y) = (local.x / radius, local.y / radius);
+        let point = Vec3::new(
+            l.select(cap, local.x, x),
+            l.select(cap, local.y, y),
+            l.select(cap, face, local.z),
+        );
+        let normal = Vec3::new(
+            l.select(cap, zero, x),
+            l.select(cap, zero, y),
+            l.select(cap, face, zero),
+        );
+        LaneSurface {
+            point: shape.forward.point(l, point),
+            normal: shape.inverse.transposed(l, normal).normalized(l),
+        }
     }
 
+    /// The coordinate of a cap made exact.
     #[inline(always)]
     fn snapped<L: Lanes>(l: L, local: Vec3<L::Real>) -> Vec3<L::Real> {
-        snapped(l, local)
-    }
-}
-
-/// The line's stretch inside x² + y² ≤ 1, cut by its stretch inside |z| ≤ 1.
-fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
-    let direction = &ray.direction[..2];
-    let a = dot(direction, direction);
-    if a.sign()? == Ordering::Equal {
-        return along_axis(ray);
-    }
-    if ray.discriminant(2, &a).sign()? == Ordering::Less {
-        return Some(None);
-    }
-    let side = Span {
-        near: Crossing::round(2, false),
-        far: Crossing::round(2, true),
-    };
-    match slab(ray, 2)? {
-        Slab::Crossed(caps) => cut(ray, side, &caps),
-        Slab::Inside => Some(Some(side)),
-        Slab::Outside => Some(None),
+        let (cap, _) = on_cap::<L>(local);
+        let face = l.real(1.0).copysign(local.z);
+        Vec3::new(local.x, local.y, l.select(cap, face, local.z))
     }
 }
 
@@ -82,130 +186,9 @@ fn along_axis<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
     })
 }
 
-/// The side as a circle about the foot of the perpendicular in the plane (bounds as for the
-/// sphere, with √2 in place of √3), the caps as a slab.
-#[inline(always)]
-fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
-    let Question {
-        shape, ray, asked, ..
-    } = *question;
-    let u = <L::Scalar as Scalar>::ROUNDOFF;
-    let one = l.real(1.0);
-    let row = inlined(
-        #[inline(always)]
-        |i: usize| shape.inverse.row(l, i, ray.origin, ray.direction),
-    );
-    let ((ox, dx), (oy, dy), (oz, dz)) = (row(0), row(1), row(2));
-    let (o, d) = (Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
-    let (e0, dd) = shape.largest_errors(l, ray, 2);
-
-    let across = d.x.mul_add(d.x, d.y * d.y);
-    let inverse_square = one / across;
-    let inverse_length = inverse_square.sqrt();
-    let foot_t = -(o.x.mul_add(d.x, o.y * d.y) * inverse_square);
-    let (fx, fy) = (d.x.mul_add(foot_t, o.x), d.y.mul_add(foot_t, o.y));
-    let squared = fx.mul_add(fx, fy * fy);
-    let c = one - squared;
-    let e = foot_t.abs().mul_add(dd, e0);
-    let q = dd * inverse_length;
-    let relative = (q * q).mul_add(l.real(64.0), e.mul_add(l.real(8.0), l.real(8.0 * u)));
-    let c_error = (e * e).mul_add(l.real(16.0), relative * squared.max(one));
-    let root = c.max(l.real(0.0)).sqrt();
-    let half = root * inverse_length;
-    let along = q.mul_add(l.real(6.0), e * l.real(4.0));
-    let side_error =
-        (c_error / root + along).mul_add(inverse_length, (foot_t.abs() + half) * l.real(9.0 * u));
-    let mut side_near = Enclosure::<L>::about(foot_t - half, side_error);
-    let mut side_far = Enclosure::<L>::about(foot_t + half, side_error);
-    let mut side_hit = c.gt(c_error);
-    let mut side_miss = c.lt(-c_error);
-    // Along the axis the relative error of the direction across it is unbounded.
-    let parallel = !across.sqrt().gt(dd * l.real(8.0));
-    if (parallel & asked).any() {
-        let drift = (across.sqrt() + dd * l.real(2.0))
-            .mul_add(reach(l, shape, ray, o, d), e0 * l.real(2.0))
-            * l.real(1.0 + 1e-6);
-        let radius = o.x.mul_add(o.x, o.y * o.y).sqrt();
-        let far = l.real(f64::INFINITY);
-        side_near = Enclosure {
-            low: l.select(parallel, -far, side_near.low),
-            high: l.select(parallel, -far, side_near.high),
-        };
-        side_far = Enclosure {
-            low: l.select(parallel, far, side_far.low),
-            high: l.select(parallel, far, side_far.high),
-        };
-        let inside = (radius + drift).lt(one);
-        let outside = (radius - drift).gt(one);
-        side_hit = (side_hit & !parallel) | (parallel & inside);
-        side_miss = (side_miss & !parallel) | (parallel & outside);
-    }
-
-    let (e, dd) = (
-        shape.origin_error(l, ray, 2),
-        l.splat(shape.direction_error[2]),
-    );
-    let mut caps = lane_slab(l, o.z, d.z, e, dd);
-    let nowhere = l.mask(false);
-    let mut along = Along::<L> {
-        lost: nowhere,
-        outside: nowhere,
-    };
-    if (caps.parallel & asked).any() {
-        along = caps.settle(l, o.z, d.z, e, dd, reach(l, shape, ray, o, d));
-    }
-    let near = Enclosure {
-        low: side_near.low.max(caps.near.low),
-        high: side_near.high.max(caps.near.high),
-    };
-    let far = Enclosure {
-        low: side_far.low.min(caps.far.low),
-        high: side_far.high.min(caps.far.high),
-    };
-    lanes::Span {
-        near,
-        far,
-        hit: side_hit & near.high.lt(far.low) & !along.lost & !along.outside,
-        miss: side_miss | along.outside | (side_hit & near.low.gt(far.high) & !along.lost),
-        parts: [l.int(0); 2],
-    }
-}
-
 /// A cap where |z| exceeds the distance from the axis, else the side.
 #[inline(always)]
 fn on_cap<L: Lanes>(local: Vec3<L::Real>) -> (L::Mask, L::Real) {
     let radius = local.x.mul_add(local.x, local.y * local.y).sqrt();
     (local.z.abs().gt(radius), radius)
-}
-
-/// The canonical point moved onto side or cap.
-#[inline(always)]
-fn surface<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, p: Vec3<L::Real>) -> LaneSurface<L> {
-    let local = shape.inverse.point(l, p);
-    let (cap, radius) = on_cap::<L>(local);
-    let zero = l.real(0.0);
-    let face = l.real(1.0).copysign(local.z);
-    let (x, y) = (local.x / radius, local.y / radius);
-    let point = Vec3::new(
-        l.select(cap, local.x, x),
-        l.select(cap, local.y, y),
-        l.select(cap, face, local.z),
-    );
-    let normal = Vec3::new(
-        l.select(cap, zero, x),
-        l.select(cap, zero, y),
-        l.select(cap, face, zero),
-    );
-    LaneSurface {
-        point: shape.forward.point(l, point),
-        normal: shape.inverse.transposed(l, normal).normalized(l),
-    }
-}
-
-/// The coordinate of a cap made exact.
-#[inline(always)]
-fn snapped<L: Lanes>(l: L, local: Vec3<L::Real>) -> Vec3<L::Real> {
-    let (cap, _) = on_cap::<L>(local);
-    let face = l.real(1.0).copysign(local.z);
-    Vec3::new(local.x, local.y, l.select(cap, face, local.z))
 }

@@ -2,20 +2,20 @@
 
 use std::cmp::Ordering;
 
-use super::kind::Question;
-use super::lanes::{self, Enclosure};
-use super::line::{Crossing, Feature, LocalRay, Span};
+use glam::{DVec2, DVec3};
+
+use super::kind::{Canonical, Emitter, Question};
+use super::lanes::part::{Part, PartKind};
+use super::lanes::{self, Enclosure, LaneShape};
+use super::line::{Crossing, Feature, Fraction, LocalRay, Span};
 use crate::math::affine::Affine;
 use crate::math::lanes::{Lanes, Real, Scalar, inlined};
 use crate::math::number::Number;
 use crate::math::vec3::Vec3;
 
-/// Canonical places of the one face.
-pub const FACES: &[(usize, &[f64])] = &[(2, &[0.0])];
-
 /// The one crossing with z = 0. A line in the plane sees it from its edge, where it has no extent:
 /// that touch is a miss.
-pub fn crossing<N: Number>(ray: &LocalRay<N>) -> Option<Option<Crossing>> {
+fn crossing<N: Number>(ray: &LocalRay<N>) -> Option<Option<Crossing>> {
     let slope = ray.direction[2].sign()?;
     Some((slope != Ordering::Equal).then_some(Crossing {
         feature: Feature::Flat,
@@ -23,22 +23,25 @@ pub fn crossing<N: Number>(ray: &LocalRay<N>) -> Option<Option<Crossing>> {
     }))
 }
 
-/// The span of a flat shape with this outline test: its one crossing twice.
-pub fn flat_span<N: Number>(
-    ray: &LocalRay<N>,
-    inside: impl FnOnce(&Crossing) -> Option<bool>,
-) -> Option<Option<Span>> {
-    let Some(crossing) = crossing(ray)? else {
-        return Some(None);
-    };
-    Some(inside(&crossing)?.then_some(Span {
-        near: crossing,
-        far: crossing,
-    }))
-}
+/// A part of the plane z = 0, and through it a canonical shape.
+pub trait Flat {
+    /// [`Canonical::NAME`].
+    const NAME: &'static str;
+    /// [`Canonical::EMITTER`].
+    const EMITTER: Emitter;
 
-/// The part of z = 0 that a flat shape covers.
-pub trait Outline {
+    /// [`Canonical::corners`].
+    fn corners() -> Option<[DVec3; 2]> {
+        Some([DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.0)])
+    }
+
+    /// [`Canonical::half_range`], for the components of a in the plane.
+    fn half_range(along: DVec2) -> f64;
+
+    /// Whether it covers the line's point on z = 0, at parameter `t`; `None` where this kind of
+    /// number cannot tell.
+    fn covers<N: Number>(ray: &LocalRay<N>, t: &Fraction<N>) -> Option<bool>;
+
     /// Whether the point (x/z, y/z), with each of x, y and z > 0 within `margin` together, is
     /// certainly inside and certainly outside.
     fn contains<L: Lanes>(
@@ -48,6 +51,76 @@ pub trait Outline {
         z: L::Real,
         margin: L::Real,
     ) -> (L::Mask, L::Mask);
+}
+
+impl<F: Flat> Canonical for F {
+    const NAME: &'static str = F::NAME;
+    const FLAT: bool = true;
+    const EMITTER: Emitter = F::EMITTER;
+    const FACES: &'static [(usize, &'static [f64])] = &[(2, &[0.0])];
+
+    fn corners() -> Option<[DVec3; 2]> {
+        F::corners()
+    }
+
+    fn half_range(along: DVec3) -> f64 {
+        F::half_range(along.truncate())
+    }
+
+    /// The one crossing twice.
+    fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
+        let Some(crossing) = crossing(ray)? else {
+            return Some(None);
+        };
+        let covered = F::covers(ray, &crossing.fraction(ray)?)?;
+        Some(covered.then_some(Span {
+            near: crossing,
+            far: crossing,
+        }))
+    }
+
+    /// t = −o_z/d_z within 2 (E_z + |t| D_z)/|d_z| + 5u|t| (first order, doubled for the rest while
+    /// D_z ≤ |d_z|/4, which [`margins`] sees to; 5u pay for the arithmetic up to the rounded ends).
+    #[inline(always)]
+    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
+        let Question { shape, ray, .. } = *question;
+        let u = <L::Scalar as Scalar>::ROUNDOFF;
+        let row = inlined(
+            #[inline(always)]
+            |i: usize| shape.inverse.row(l, i, ray.origin, ray.direction),
+        );
+        let ((ox, dx), (oy, dy), (oz, dz)) = (row(0), row(1), row(2));
+        let [constant, factor] = shape.margins;
+        let margin = ray.extent.mul_add(l.splat(factor), l.splat(constant));
+        let x = ox.mul_add(dz, -(oz * dx));
+        let y = oy.mul_add(dz, -(oz * dy));
+        let slope = dz.abs();
+        let (inside, outside) = F::contains(l, x, y, slope, margin);
+        let reciprocal = l.real(1.0) / dz;
+        let t = -(oz * reciprocal);
+        let distance = t.abs();
+        let z_error = l.splat(shape.direction_error[2]);
+        let e = distance.mul_add(z_error, shape.origin_error(l, ray, 2)) * l.real(2.0);
+        let error = e.mul_add(reciprocal.abs(), distance * l.real(5.0 * u));
+        let at = Enclosure::about(t, error);
+        lanes::Span {
+            near: at,
+            far: at,
+            hit: inside,
+            miss: outside,
+            parts: [l.int(0); 2],
+        }
+    }
+
+    fn parts<T: Scalar>(shape: &LaneShape<T>) -> Vec<Part<T>> {
+        vec![shape.plane(2, PartKind::Plane)]
+    }
+
+    /// The height made exact.
+    #[inline(always)]
+    fn snapped<L: Lanes>(l: L, local: Vec3<L::Real>) -> Vec3<L::Real> {
+        Vec3::new(local.x, local.y, l.real(0.0))
+    }
 }
 
 /// The constant and the factor of max|o| in the margin of the test of where.
@@ -72,43 +145,4 @@ pub fn margins<T: Scalar>(inverse: &Affine) -> [f64; 2] {
     };
     let (x, y) = (across(0), across(1));
     [x[0].max(y[0]), x[1].max(y[1])]
-}
-
-/// t = −o_z/d_z within 2 (E_z + |t| D_z)/|d_z| + 5u|t| (first order, doubled for the rest while
-/// D_z ≤ |d_z|/4, which [`margins`] sees to; 5u pay for the arithmetic up to the rounded ends).
-#[inline(always)]
-pub fn lane_span<L: Lanes, O: Outline>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
-    let Question { shape, ray, .. } = *question;
-    let u = <L::Scalar as Scalar>::ROUNDOFF;
-    let row = inlined(
-        #[inline(always)]
-        |i: usize| shape.inverse.row(l, i, ray.origin, ray.direction),
-    );
-    let ((ox, dx), (oy, dy), (oz, dz)) = (row(0), row(1), row(2));
-    let [constant, factor] = shape.margins;
-    let margin = ray.extent.mul_add(l.splat(factor), l.splat(constant));
-    let x = ox.mul_add(dz, -(oz * dx));
-    let y = oy.mul_add(dz, -(oz * dy));
-    let slope = dz.abs();
-    let (inside, outside) = O::contains(l, x, y, slope, margin);
-    let reciprocal = l.real(1.0) / dz;
-    let t = -(oz * reciprocal);
-    let distance = t.abs();
-    let z_error = l.splat(shape.direction_error[2]);
-    let e = distance.mul_add(z_error, shape.origin_error(l, ray, 2)) * l.real(2.0);
-    let error = e.mul_add(reciprocal.abs(), distance * l.real(5.0 * u));
-    let at = Enclosure::about(t, error);
-    lanes::Span {
-        near: at,
-        far: at,
-        hit: inside,
-        miss: outside,
-        parts: [l.int(0); 2],
-    }
-}
-
-/// A point of the plane, its height made exact.
-#[inline(always)]
-pub fn snapped<L: Lanes>(l: L, local: Vec3<L::Real>) -> Vec3<L::Real> {
-    Vec3::new(local.x, local.y, l.real(0.0))
 }

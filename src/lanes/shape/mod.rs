@@ -34,6 +34,7 @@ use glam::DVec3;
 use implicit::Implicit;
 pub use kind::{Emitter, ShapeKind};
 
+pub use crate::math::ray::Ray;
 pub use list::{Query, nearest, occluded};
 pub use placed::{Placed, SingularMatrix};
 
@@ -69,23 +70,6 @@ impl Shape {
             Self::Canonical(kind) => kind.corners(),
             Self::Implicit(implicit) => Some(implicit.inside),
         }
-    }
-}
-
-/// The line origin + t direction, with exactly these numbers. The direction need not be of unit
-/// length; t is in units of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ray {
-    /// Where t is 0, world coordinates.
-    pub origin: DVec3,
-    /// Not zero.
-    pub direction: DVec3,
-}
-
-impl Ray {
-    /// Whether all numbers are finite and the direction is not zero: only such a ray hits.
-    pub fn is_valid(&self) -> bool {
-        self.origin.is_finite() && self.direction.is_finite() && self.direction != DVec3::ZERO
     }
 }
 

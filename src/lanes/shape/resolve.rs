@@ -22,6 +22,17 @@ pub struct Departure {
     pub inward: bool,
 }
 
+/// A ray that lanes could not decide, and the objects that may have to do with it.
+#[derive(Debug, Clone, Copy)]
+pub struct Doubt<'a> {
+    /// The objects to ask; `None` for all.
+    pub candidates: Option<&'a [u32]>,
+    /// The ray.
+    pub ray: Ray,
+    /// What its start knows.
+    pub departure: Departure,
+}
+
 /// What the ladder found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Resolved {
@@ -55,16 +66,13 @@ impl Resolver {
         }
     }
 
-    /// The closest hit; among the candidates, if given.
-    pub fn nearest(
-        &self,
-        candidates: Option<&[u32]>,
-        origin: DVec3,
-        direction: DVec3,
-        departure: Departure,
-        tally: &mut Tally,
-    ) -> Option<Resolved> {
-        let ray = Ray { origin, direction };
+    /// The closest hit.
+    pub fn nearest(&self, doubt: &Doubt<'_>, tally: &mut Tally) -> Option<Resolved> {
+        let Doubt {
+            candidates,
+            ray,
+            departure,
+        } = *doubt;
         let query = Query {
             ray,
             t_min: 0.0,
@@ -84,7 +92,7 @@ impl Resolver {
             return Some(Resolved {
                 t: 0.0,
                 object: departure.object,
-                part: self.part(index, self.placed[index].inverse().point(origin)),
+                part: self.part(index, self.placed[index].inverse().point(ray.origin)),
             });
         }
         let (index, hit) = found?;
@@ -112,23 +120,13 @@ impl Resolver {
         self.placed[index].first_hit(ray, 0.0, Start::OnSurfaceInward, tally)
     }
 
-    /// Whether anything but `except` lies strictly between the origin and `t_max`; among the
-    /// candidates, if given.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a ray, its limits and its context"
-    )]
-    pub fn occluded(
-        &self,
-        candidates: Option<&[u32]>,
-        origin: DVec3,
-        direction: DVec3,
-        t_max: f64,
-        departure: Departure,
-        except: u32,
-        tally: &mut Tally,
-    ) -> bool {
-        let ray = Ray { origin, direction };
+    /// Whether anything but the object `except` lies strictly between the origin and `t_max`.
+    pub fn occluded(&self, doubt: &Doubt<'_>, t_max: f64, except: u32, tally: &mut Tally) -> bool {
+        let Doubt {
+            candidates,
+            ray,
+            departure,
+        } = *doubt;
         let query = Query {
             ray,
             t_min: 0.0,

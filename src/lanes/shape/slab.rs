@@ -66,9 +66,28 @@ pub struct LaneSlab<L: Lanes> {
     pub parallel: L::Mask,
 }
 
-/// Intersects the slab |o + t d| ≤ 1, where o is within `e` and d within `dd` of the exact values.
+/// One coordinate of the lines, o + t d, with bounds of the errors of both numbers.
+#[derive(Clone, Copy)]
+pub struct Coordinate<L: Lanes> {
+    /// o.
+    pub origin: L::Real,
+    /// d.
+    pub direction: L::Real,
+    /// What o is off by at most.
+    pub origin_error: L::Real,
+    /// What d is off by at most.
+    pub direction_error: L::Real,
+}
+
+/// Intersects the slab |o + t d| ≤ 1.
 #[inline(always)]
-pub fn lane_slab<L: Lanes>(l: L, o: L::Real, d: L::Real, e: L::Real, dd: L::Real) -> LaneSlab<L> {
+pub fn lane_slab<L: Lanes>(l: L, coordinate: &Coordinate<L>) -> LaneSlab<L> {
+    let Coordinate {
+        origin: o,
+        direction: d,
+        origin_error: e,
+        direction_error: dd,
+    } = *coordinate;
     let one = l.real(1.0);
     let inverse = one / d;
     let t1 = (-one - o) * inverse;
@@ -99,15 +118,13 @@ impl<L: Lanes> LaneSlab<L> {
     /// Decides the parallel lanes by position, for all |t| ≤ `reach`, within which the line could hit
     /// anything else of the shape; inside, the slab is no limit to them.
     #[inline(always)]
-    pub fn settle(
-        &mut self,
-        l: L,
-        o: L::Real,
-        d: L::Real,
-        e: L::Real,
-        dd: L::Real,
-        reach: L::Real,
-    ) -> Along<L> {
+    pub fn settle(&mut self, l: L, coordinate: &Coordinate<L>, reach: L::Real) -> Along<L> {
+        let Coordinate {
+            origin: o,
+            direction: d,
+            origin_error: e,
+            direction_error: dd,
+        } = *coordinate;
         let one = l.real(1.0);
         let drift = (d.abs() + dd).mul_add(reach, e) * l.real(1.0 + 1e-6);
         let inside = self.parallel & (o.abs() + drift).lt(one);

@@ -29,13 +29,29 @@ impl Canonical for Sphere {
         along.length()
     }
 
+    /// The line meets the sphere if the discriminant of its radial form is not negative.
     fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
-        span(ray)
+        let a = dot(&ray.direction, &ray.direction);
+        let meets = ray.discriminant(3, &a).sign()? != Ordering::Less;
+        Some(meets.then(|| Span {
+            near: Crossing::round(3, false),
+            far: Crossing::round(3, true),
+        }))
     }
 
+    /// Where the lines meet the sphere.
     #[inline(always)]
     fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
-        lane_span(l, question)
+        let Question {
+            shape,
+            ray,
+            asked,
+            limit,
+        } = *question;
+        match &shape.ball {
+            Some(ball) => ball_span(l, ball, ray, asked, limit),
+            None => ellipsoid_span(l, shape, ray),
+        }
     }
 
     fn parts<T: Scalar>(shape: &LaneShape<T>) -> Vec<Part<T>> {
@@ -47,20 +63,15 @@ impl Canonical for Sphere {
         })]
     }
 
+    /// The canonical point scaled to length 1, which is also the canonical normal.
     #[inline(always)]
     fn surface<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, p: Vec3<L::Real>) -> LaneSurface<L> {
-        surface(l, shape, p)
+        let local = shape.inverse.point(l, p).normalized(l);
+        LaneSurface {
+            point: shape.forward.point(l, local),
+            normal: shape.inverse.transposed(l, local).normalized(l),
+        }
     }
-}
-
-/// The line meets the sphere if the discriminant of its radial form is not negative.
-fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
-    let a = dot(&ray.direction, &ray.direction);
-    let meets = ray.discriminant(3, &a).sign()? != Ordering::Less;
-    Some(meets.then(|| Span {
-        near: Crossing::round(3, false),
-        far: Crossing::round(3, true),
-    }))
 }
 
 /// A sphere whose placement only scales it alike along all axes and moves it.
@@ -167,21 +178,6 @@ impl<L: Lanes> Asked<L> for Ball<L::Scalar> {
         clear_squared,
         clear
     );
-}
-
-/// Where the lines meet the sphere.
-#[inline(always)]
-fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
-    let Question {
-        shape,
-        ray,
-        asked,
-        limit,
-    } = *question;
-    match &shape.ball {
-        Some(ball) => ball_span(l, ball, ray, asked, limit),
-        None => ellipsoid_span(l, shape, ray),
-    }
 }
 
 /// The discriminant from the foot of the perpendicular (Haines, Günther and Akenine-Möller, "Precision
@@ -310,15 +306,5 @@ impl<L: Lanes> Foot<L> {
             miss: c.lt(-c_error),
             parts: [l.int(0); 2],
         }
-    }
-}
-
-/// The canonical point scaled to length 1, which is also the canonical normal.
-#[inline(always)]
-fn surface<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, p: Vec3<L::Real>) -> LaneSurface<L> {
-    let local = shape.inverse.point(l, p).normalized(l);
-    LaneSurface {
-        point: shape.forward.point(l, local),
-        normal: shape.inverse.transposed(l, local).normalized(l),
     }
 }

@@ -11,8 +11,8 @@ use crate::render::session::{Rendered, Request, Unwatched, render, render_binned
 use crate::render::target::{Singular, first_hits};
 use crate::render::tile::Window;
 
+use crate::compare::{Channel, Side};
 use crate::scene::{Overrides, Scene, SceneError, load};
-use crate::study::compare::{Channel, Side};
 
 /// Independent scrambles per pixel: they cost little of the points' quality, and three degrees of
 /// freedom in each pixel are many in a block.

@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 
 use super::{Case, CaseError, Planned, Question, ROUNDS};
+use crate::compare::{Judgement, Side, judge};
 use crate::stats::Estimate;
 use crate::stats::verdict::{Verdict, judge as verdict};
-use crate::study::compare::{Judgement, Side, judge};
 
 /// Levels of single tests.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,10 +1,10 @@
 //! How many samples, and what they can show.
 
 use super::{Case, ROUNDS};
+use crate::compare::{Channel, Side, mean_over};
 use crate::film::names;
 use crate::stats::verdict::POWER;
 use crate::stats::{Estimate, student};
-use crate::study::compare::{Channel, Side, mean_over};
 
 /// Tolerance of image means, relative, where samples and reference can show that much.
 pub const DELTA: f64 = 1e-3;

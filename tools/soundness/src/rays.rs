@@ -10,12 +10,12 @@ use std::cmp::Ordering;
 use std::time::Instant;
 
 use astro_float::{BigFloat, Consts, RoundingMode};
+use etalon::field::expression::parse;
+use etalon::field::tape::{Algebra, Binary, Tape, Unary};
 use etalon::math::affine::Affine;
 use etalon::root::Outcome;
 use etalon::shape::Ray;
 use etalon::shape::implicit::enclosed::{EnclosedField, Searching};
-use etalon::field::expression::parse;
-use etalon::field::tape::{Algebra, Binary, Tape, Unary};
 use etalon::shape::ladder::{Ladder, ScaledRay};
 use glam::DVec3;
 use num_rational::BigRational;

@@ -60,6 +60,19 @@ pub struct StartSign<L: Lanes> {
     pub inward: L::Mask,
 }
 
+/// Rays that an implicit surface is asked about.
+#[derive(Clone, Copy)]
+pub struct FieldQuestion<'a, L: Lanes> {
+    /// The rays.
+    pub ray: &'a LaneRay<L>,
+    /// What they know of the surface at their start.
+    pub start: StartSign<L>,
+    /// Hits count before this.
+    pub limit: L::Real,
+    /// The rays whose answers count.
+    pub active: L::Mask,
+}
+
 impl<T: Scalar> LaneImplicit<T> {
     /// Rounds a placement: clip box in object coordinates, world → object map.
     ///
@@ -99,34 +112,42 @@ impl<T: Scalar> LaneImplicit<T> {
     ///
     /// The ray is clipped to the surface's own box and the hit compared with the limit afterwards, so
     /// that a hit does not depend, in its last digits, on what else was asked before.
-    #[inline(always)]
+    #[inline(never)]
     pub fn first_hit<L: Lanes<Scalar = T>>(
         &self,
         l: L,
-        ray: &LaneRay<L>,
-        start: StartSign<L>,
-        limit: L::Real,
-        active: L::Mask,
+        question: &FieldQuestion<'_, L>,
         tally: &mut ImplicitTally,
     ) -> (L::Real, L::Mask) {
-        let inverse = ray.direction.reciprocal(l);
-        let active = active & self.bounds.meets(l, ray.origin, inverse, limit);
-        if !active.any() {
-            return (limit, active);
-        }
-        let (t, found) = match &self.finder {
-            Finder::SignChange => {
-                tally.uncertified += u64::from(active.bits().count_ones());
-                self.first_change(l, ray, start, active)
-            }
-            finder => {
-                let rays = PacketRays::new(l, ray);
-                let bits = [active.bits(), start.on.bits()];
-                let (t, found) = rays.ask(finder, self.level, bits, L::COUNT, tally);
-                (l.load(&t), l.mask_from_bits(found))
-            }
-        };
-        (t, found & t.lt(limit))
+        l.vectorize(
+            #[inline(always)]
+            || {
+                let FieldQuestion {
+                    ray,
+                    start,
+                    limit,
+                    active,
+                } = *question;
+                let inverse = ray.direction.reciprocal(l);
+                let active = active & self.bounds.meets(l, ray.origin, inverse, limit);
+                if !active.any() {
+                    return (limit, active);
+                }
+                let (t, found) = match &self.finder {
+                    Finder::SignChange => {
+                        tally.uncertified += u64::from(active.bits().count_ones());
+                        self.first_change(l, ray, start, active)
+                    }
+                    finder => {
+                        let rays = PacketRays::new(l, ray);
+                        let bits = [active.bits(), start.on.bits()];
+                        let (t, found) = rays.ask(finder, self.level, bits, L::COUNT, tally);
+                        (l.load(&t), l.mask_from_bits(found))
+                    }
+                };
+                (t, found & t.lt(limit))
+            },
+        )
     }
 
     /// Outward normals at object points that are met in these directions: the gradient, of any

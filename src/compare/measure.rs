@@ -1,0 +1,112 @@
+//! The error metrics of one picture against another.
+
+use super::{Channel, CompareError, Side};
+use crate::film::names;
+use crate::stats::metrics::{
+    Metric, mean, mean_error, mean_over_channels, relative_mean_error, relmse, rmse, smape,
+};
+
+/// All metrics of a channel, or of several.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Metrics {
+    /// Signed mean error, in the unit of the channel.
+    pub mean_error: Metric,
+    /// The same over the reference's mean.
+    pub relative_mean_error: Metric,
+    /// Root of the mean squared error.
+    pub rmse: Metric,
+    /// Relative mean squared error.
+    pub relmse: Metric,
+    /// The same without the share of the reference's own variance, where that is known.
+    pub relmse_without_reference_variance: Option<Metric>,
+    /// Symmetric mean absolute percentage error, as a fraction.
+    pub smape: Metric,
+}
+
+/// The metrics of a channel.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct ChannelMetrics {
+    /// Its name.
+    pub channel: String,
+    /// Means of both pictures.
+    pub means: [f64; 2],
+    /// The metrics.
+    pub metrics: Metrics,
+}
+
+/// The metrics of each channel that both sides have, and those of R, G, B together where they have
+/// them.
+///
+/// # Errors
+/// [`CompareError`] for sides of different sizes or without a common channel.
+pub fn metrics(a: &Side, b: &Side) -> Result<(Vec<ChannelMetrics>, Option<Metrics>), CompareError> {
+    let paths = || [a.path.clone(), b.path.clone()];
+    if [a.width, a.height] != [b.width, b.height] {
+        return Err(CompareError::Sizes {
+            paths: paths(),
+            sizes: [[a.width, a.height], [b.width, b.height]],
+        });
+    }
+    let channels: Vec<ChannelMetrics> = shared(a, b).map(|(a, b)| of_channel(a, b)).collect();
+    if channels.is_empty() {
+        return Err(CompareError::NothingShared {
+            paths: paths(),
+            names: [a, b].map(list),
+        });
+    }
+    let of_colour = |c: &&ChannelMetrics| names::RGB.contains(&c.channel.as_str());
+    let colours: Vec<Metrics> = channels
+        .iter()
+        .filter(of_colour)
+        .map(|c| c.metrics)
+        .collect();
+    let together = (colours.len() == names::RGB.len()).then(|| joined(&colours));
+    Ok((channels, together))
+}
+
+/// The channels that both sides have.
+pub fn shared<'a>(a: &'a Side, b: &'a Side) -> impl Iterator<Item = (&'a Channel, &'a Channel)> {
+    let both = |channel: &'a Channel| Some((channel, b.channel(&channel.name)?));
+    a.channels.iter().filter_map(both)
+}
+
+fn list(side: &Side) -> String {
+    let names: Vec<&str> = side.channels.iter().map(|c| c.name.as_str()).collect();
+    names.join(", ")
+}
+
+fn of_channel(a: &Channel, b: &Channel) -> ChannelMetrics {
+    let (x, r) = (a.values.as_slice(), b.values.as_slice());
+    ChannelMetrics {
+        channel: a.name.clone(),
+        means: [mean(x), mean(r)],
+        metrics: Metrics {
+            mean_error: mean_error(x, r),
+            relative_mean_error: relative_mean_error(x, r),
+            rmse: rmse(x, r),
+            relmse: relmse(x, r, None),
+            relmse_without_reference_variance: b.variances.as_ref().map(|v| relmse(x, r, Some(v))),
+            smape: smape(x, r),
+        },
+    }
+}
+
+fn joined(channels: &[Metrics]) -> Metrics {
+    let over = |metric: fn(&Metrics) -> Metric| {
+        mean_over_channels(&channels.iter().map(metric).collect::<Vec<_>>())
+    };
+    let known: Option<Vec<Metric>> = channels
+        .iter()
+        .map(|c| c.relmse_without_reference_variance)
+        .collect();
+    Metrics {
+        mean_error: over(|c| c.mean_error),
+        relative_mean_error: over(|c| c.relative_mean_error),
+        rmse: over(|c| c.rmse),
+        relmse: over(|c| c.relmse),
+        relmse_without_reference_variance: known.map(|known| mean_over_channels(&known)),
+        smape: over(|c| c.smape),
+    }
+}

@@ -1,0 +1,60 @@
+//! One ray through the pixel's centre; everything else as [`Sobol`] draws it.
+
+use super::Slot;
+use super::kind::Sampler;
+use super::sequence::{CameraSample, Identity, Sequence};
+use super::sobol::{Sobol, coordinate};
+use crate::math::lanes::Lanes;
+
+/// Every path through its pixel's centre.
+pub struct Center;
+
+impl Sampler for Center {
+    const NAME: &'static str = "center";
+    const WORDS: &'static str = "Sobol' points with Owen scrambling, through the pixel's centre";
+    const CENTRED: bool = true;
+
+    #[inline(always)]
+    fn index<L: Lanes>(l: L, index: L::Int) -> L::Int {
+        Sobol::index(l, index)
+    }
+
+    #[inline(always)]
+    fn camera<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
+        let zero = l.real(0.0);
+        CameraSample {
+            pixel: [l.real(0.5); 2],
+            wavelength: coordinate(sequence, l, id, 2),
+            lens: if lens {
+                [
+                    coordinate(sequence, l, id, 3),
+                    coordinate(sequence, l, id, 4),
+                ]
+            } else {
+                [zero; 2]
+            },
+        }
+    }
+
+    #[inline(always)]
+    fn single<L: Lanes>(
+        sequence: &Sequence,
+        l: L,
+        id: Identity<L>,
+        slot: Slot,
+        depth: L::Int,
+    ) -> L::Real {
+        Sobol::single(sequence, l, id, slot, depth)
+    }
+
+    #[inline(always)]
+    fn pair<L: Lanes>(
+        sequence: &Sequence,
+        l: L,
+        id: Identity<L>,
+        slot: Slot,
+        depth: L::Int,
+    ) -> [L::Real; 2] {
+        Sobol::pair(sequence, l, id, slot, depth)
+    }
+}

@@ -1,0 +1,268 @@
+//! All root finders over rays whose first hits are known: how often wrong, how often undecided,
+//! and how long a ray takes.
+
+pub mod chart;
+pub mod map;
+mod march;
+mod oracle;
+
+use std::time::Instant;
+
+use etalon::math::affine::Affine;
+use etalon::scene::{FinderChoice, Implicit};
+use etalon::shape::implicit::certified::Workspace;
+use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
+use etalon::shape::{Query, Ray};
+
+use march::March;
+pub use oracle::{Oracle, OracleError, OracleRay, OracleShape};
+
+/// The classes of rays, in the order of the chart's panels.
+pub const CLASSES: [&str; 7] = [
+    "ordinary",
+    "axis",
+    "graze",
+    "near_singular",
+    "singular",
+    "start_on",
+    "far",
+];
+
+/// Arithmetic of a finder that proves nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// f32.
+    Single,
+    /// f64.
+    Double,
+}
+
+/// A finder that takes part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Contestant {
+    /// Equal steps and bisection.
+    SignChange(Precision, u32),
+    /// One that proves its answers, in f64 and, where it climbs, above.
+    Proved(FinderChoice),
+}
+
+/// All that take part: the steps swept for the first kind.
+pub const CONTESTANTS: [Contestant; 12] = [
+    Contestant::SignChange(Precision::Single, 100),
+    Contestant::SignChange(Precision::Single, 256),
+    Contestant::SignChange(Precision::Single, 1_000),
+    Contestant::SignChange(Precision::Single, 10_000),
+    Contestant::SignChange(Precision::Double, 100),
+    Contestant::SignChange(Precision::Double, 256),
+    Contestant::SignChange(Precision::Double, 1_000),
+    Contestant::SignChange(Precision::Double, 10_000),
+    Contestant::Proved(FinderChoice::SphereTrace),
+    Contestant::Proved(FinderChoice::Interval),
+    Contestant::Proved(FinderChoice::Polynomial),
+    Contestant::Proved(FinderChoice::Auto),
+];
+
+impl Contestant {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SignChange(..) => "sign-change",
+            Self::Proved(choice) => choice.name(),
+        }
+    }
+
+    /// Name of the arithmetic it begins with.
+    pub fn precision(self) -> &'static str {
+        match self {
+            Self::SignChange(Precision::Single, _) => "f32",
+            _ => "f64",
+        }
+    }
+
+    /// Steps, of the one that steps.
+    pub fn steps(self) -> Option<u32> {
+        match self {
+            Self::SignChange(_, steps) => Some(steps),
+            Self::Proved(_) => None,
+        }
+    }
+}
+
+/// What a finder says of a ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Answer {
+    /// The first hit is there.
+    Hit(f64),
+    /// There is none.
+    Miss,
+    /// It cannot tell.
+    Undecided,
+}
+
+/// A surface ready for one contestant.
+pub enum Ready {
+    /// To be stepped along in f32.
+    Single(March<f32>),
+    /// To be stepped along in f64.
+    Double(March<f64>),
+    /// To be asked for proofs.
+    Proved(Box<PlacedImplicit>),
+}
+
+impl Contestant {
+    /// Prepares a surface; `None` where it cannot be placed.
+    pub fn ready(self, shape: &OracleShape) -> Option<Ready> {
+        self.of(&Implicit {
+            name: None,
+            field: shape.field.clone(),
+            inside: shape.inside(),
+            closed: false,
+            finder: FinderChoice::Auto,
+            steps: 1,
+        })
+    }
+
+    /// Prepares a surface whose box is a cube about the origin, not moved.
+    pub fn of(self, implicit: &Implicit) -> Option<Ready> {
+        let (tape, half_width) = (&implicit.field.tape, implicit.inside[1].x);
+        Some(match self {
+            Self::SignChange(Precision::Single, steps) => {
+                Ready::Single(March::new(tape, half_width, steps))
+            }
+            Self::SignChange(Precision::Double, steps) => {
+                Ready::Double(March::new(tape, half_width, steps))
+            }
+            Self::Proved(finder) => {
+                let implicit = Implicit {
+                    finder,
+                    ..implicit.clone()
+                };
+                let placed = PlacedImplicit::new(&implicit, &Affine::IDENTITY);
+                Ready::Proved(Box::new(placed.ok()?))
+            }
+        })
+    }
+}
+
+impl Ready {
+    /// The first hit with t > `t_min`, or at it where it is 0.
+    pub fn first_hit(&self, ray: &Ray, t_min: f64, workspace: &mut Workspace) -> Answer {
+        match self {
+            Self::Single(march) => march.first_hit(ray, t_min),
+            Self::Double(march) => march.first_hit(ray, t_min),
+            Self::Proved(placed) => {
+                let query = Query {
+                    ray: *ray,
+                    t_min,
+                    t_max: f64::INFINITY,
+                };
+                match placed.first_crossing(&query, workspace, &mut ImplicitTally::default()) {
+                    ImplicitAnswer::Found(hit) => Answer::Hit(hit.t),
+                    ImplicitAnswer::Absent => Answer::Miss,
+                    ImplicitAnswer::Undecided => Answer::Undecided,
+                }
+            }
+        }
+    }
+}
+
+/// What a contestant did with the rays of a class.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Score {
+    /// Rays.
+    pub rays: u32,
+    /// Answers that are not the truth.
+    pub wrong: u32,
+    /// Rays that it could not decide.
+    pub undecided: u32,
+    /// Time for all of them, ns.
+    pub nanoseconds: f64,
+}
+
+impl Score {
+    /// Share of wrong answers.
+    pub fn wrong_share(&self) -> f64 {
+        f64::from(self.wrong) / f64::from(self.rays.max(1))
+    }
+
+    /// Share of undecided rays.
+    pub fn undecided_share(&self) -> f64 {
+        f64::from(self.undecided) / f64::from(self.rays.max(1))
+    }
+
+    /// Time a ray, ns.
+    pub fn nanoseconds_a_ray(&self) -> f64 {
+        self.nanoseconds / f64::from(self.rays.max(1))
+    }
+
+    /// Both together.
+    pub fn joined(self, other: Self) -> Self {
+        Self {
+            rays: self.rays + other.rays,
+            wrong: self.wrong + other.wrong,
+            undecided: self.undecided + other.undecided,
+            nanoseconds: self.nanoseconds + other.nanoseconds,
+        }
+    }
+}
+
+/// One contestant's scores by class.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Result {
+    /// Who.
+    pub contestant: Contestant,
+    /// By class, as in [`CLASSES`].
+    pub scores: [Score; CLASSES.len()],
+}
+
+impl Result {
+    /// Over all classes.
+    pub fn all(&self) -> Score {
+        self.scores
+            .iter()
+            .fold(Score::default(), |a, b| a.joined(*b))
+    }
+}
+
+/// Runs one contestant over all rays, on this thread.
+pub fn run(contestant: Contestant, oracle: &Oracle) -> Result {
+    let mut scores = [Score::default(); CLASSES.len()];
+    let mut workspace = Workspace::default();
+    for shape in &oracle.shapes {
+        let Some(ready) = contestant.ready(shape) else {
+            continue;
+        };
+        for (class, score) in CLASSES.iter().zip(&mut scores) {
+            let rays: Vec<&OracleRay> = oracle.rays_of(&shape.name, class).collect();
+            *score = score.joined(timed(&ready, shape, &rays, &mut workspace));
+        }
+    }
+    Result { contestant, scores }
+}
+
+/// The rays of one shape and class; answers are judged after the clock has stopped.
+fn timed(
+    ready: &Ready,
+    shape: &OracleShape,
+    rays: &[&OracleRay],
+    workspace: &mut Workspace,
+) -> Score {
+    let start = Instant::now();
+    let answers: Vec<Answer> = rays
+        .iter()
+        .map(|ray| ready.first_hit(&ray.ray, ray.t_min, workspace))
+        .collect();
+    let mut score = Score {
+        rays: rays.len() as u32,
+        nanoseconds: start.elapsed().as_nanos() as f64,
+        ..Score::default()
+    };
+    for (ray, answer) in rays.iter().zip(answers) {
+        match answer {
+            Answer::Undecided => score.undecided += 1,
+            answer if !ray.is_right(answer, shape.half_width) => score.wrong += 1,
+            _ => {}
+        }
+    }
+    score
+}
