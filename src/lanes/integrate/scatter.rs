@@ -3,10 +3,9 @@
 use super::bounce::Step;
 use super::direct::{Lit, Receiver};
 use super::intersect::Leaving;
-use super::model::Scatter;
 use super::pool::{WIDEST, any, array, bit_where, each, flags, has};
 use super::surface::Surfaces;
-use crate::material::fresnel;
+use crate::material::{MaterialKind, fresnel};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
 use crate::math::vec3::Vec3;
 use crate::sample::Slot;
@@ -57,10 +56,10 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         };
         let kind = inlined(
             #[inline(always)]
-            |scatter: Scatter| going & surface.scatter.same(l.int(scatter as u32)),
+            |kind: MaterialKind| going & surface.kind.same(l.int(kind as u32)),
         );
         if needs.diffuse {
-            let diffuse = kind(Scatter::Diffuse);
+            let diffuse = kind(MaterialKind::Diffuse);
             if any(diffuse) {
                 self.diffuse(l, surface, diffuse, &mut next);
             }
@@ -74,17 +73,17 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             .min(l.real(1.0));
         let mirrored = ray.direction.along(facing, cosine + cosine);
         if needs.conductor {
-            let conductor = kind(Scatter::Conductor);
+            let conductor = kind(MaterialKind::Conductor);
             self.conductor(l, surface, cosine, conductor);
             next.direction = Vec3::select(l, conductor, mirrored, next.direction);
         }
         if needs.ideal_mirror {
-            let mirror = kind(Scatter::IdealMirror);
-            self.multiply_by(l, mirror, surface.spectrum);
+            let mirror = kind(MaterialKind::Mirror);
+            self.multiply_by(l, mirror, surface.spectra[0]);
             next.direction = Vec3::select(l, mirror, mirrored, next.direction);
         }
         if needs.glass {
-            let glass = kind(Scatter::Glass);
+            let glass = kind(MaterialKind::Glass);
             if any(glass) {
                 let incidence = Incidence {
                     direction: ray.direction,
@@ -109,8 +108,8 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     #[inline(always)]
     fn conductor(&mut self, l: L, surface: &Surfaces<L>, cosine: L::Real, m: L::Mask) {
         let (indices, extinctions) = (
-            self.table_rows(l, surface.spectrum),
-            self.table_rows(l, surface.extinction),
+            self.table_rows(l, surface.spectra[0]),
+            self.table_rows(l, surface.spectra[1]),
         );
         let table = self.model.spectra.rows::<C>();
         let cosines = array(l, cosine);
@@ -135,7 +134,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let normal = Vec3::select(l, surface.front, surface.normal, -surface.normal);
         let sequence = &self.model.sequence;
         let [u, v] = if self.model.lights.is_empty() {
-            self.multiply_by(l, diffuse, surface.spectrum);
+            self.multiply_by(l, diffuse, surface.spectra[0]);
             sequence.pair(l, self.id, Slot::Bsdf, self.depth)
         } else {
             let [light, bsdf] =
@@ -149,7 +148,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
                 },
             };
             let lit = self.direct(l, &receiver, diffuse, light);
-            self.reflect(l, diffuse, surface.spectrum, &lit);
+            self.reflect(l, diffuse, surface.spectra[0], &lit);
             bsdf
         };
         let local = cosine_hemisphere(l, u, v);
@@ -203,7 +202,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let spreads = disperses.bits();
         let front = surface.front.bits();
         let cosines = array(l, incidence.cosine);
-        let at = self.table_rows(l, surface.spectrum);
+        let at = self.table_rows(l, surface.spectra[0]);
         let variates = self
             .model
             .sequence
