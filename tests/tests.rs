@@ -29,6 +29,7 @@ mod oracle_primitives;
 mod oracle_support;
 mod references;
 mod render_goal;
+mod rooms;
 mod sampling;
 mod scene_file;
 mod shape_ladder;
