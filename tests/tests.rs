@@ -18,6 +18,7 @@ mod lane_functions;
 mod lane_shapes;
 mod lanes_support;
 mod lights;
+mod many_implicits;
 mod many_lights;
 mod many_objects;
 mod metrics;

@@ -49,6 +49,7 @@ pub struct Requests {
 
 impl Requests {
     /// Forgets all.
+    #[inline]
     pub fn clear(&mut self) {
         for column in [&mut self.x, &mut self.y, &mut self.sample] {
             column.clear();
@@ -58,6 +59,7 @@ impl Requests {
     }
 
     /// Adds samples `from .. to` of a pixel.
+    #[inline]
     pub fn push(&mut self, x: u32, y: u32, from: u32, to: u32) {
         let length = self.length + (to - from) as usize;
         for (column, value) in [(&mut self.x, x), (&mut self.y, y)] {
@@ -72,11 +74,13 @@ impl Requests {
     }
 
     /// Their number.
+    #[inline]
     pub fn len(&self) -> usize {
         self.length
     }
 
     /// Whether there are none.
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.length == 0
     }

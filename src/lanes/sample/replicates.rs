@@ -76,6 +76,7 @@ impl Replicates {
     }
 
     /// Number of replicates that `samples` samples reach.
+    #[inline]
     pub fn count(self, samples: u32) -> u32 {
         match self {
             Self::Fixed(count) => count.min(samples),
@@ -92,6 +93,7 @@ impl Replicates {
     }
 
     /// Number of samples among the first `samples` that belong to `replicate`.
+    #[inline]
     pub fn samples_of(self, replicate: u32, samples: u32) -> u32 {
         match self {
             Self::Fixed(count) => Self::share(replicate, 0, count, samples),
@@ -111,6 +113,7 @@ impl Replicates {
     }
 
     /// What `replicate` gets of `samples` dealt in turn to `count` replicates from `first` on.
+    #[inline]
     fn share(replicate: u32, first: u32, count: u32, samples: u32) -> u32 {
         if replicate < first || replicate >= first + count {
             return 0;

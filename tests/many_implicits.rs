@@ -1,0 +1,155 @@
+//! Many implicit surfaces: their hits are those of each asked alone, and a ray asks a few of them.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "the tests' own scenes are right, and what they hold is known"
+)]
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use etalon::plan::Plan;
+use etalon::render::trace::{First, Tracer};
+use etalon::render::{Request, Unwatched, render};
+use etalon::scene::{self, Overrides, Scene};
+use etalon::shape::Ray;
+use glam::DVec3;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+use crate::shape_ladder::cubed;
+
+const HEAD: &str = r#"
+[camera]
+from = [0, 0, 9]
+to = [0, 0, 0]
+fov = 30
+
+[image]
+size = [32, 32]
+spp = 4
+max_depth = 4
+sampler = "independent"
+
+[materials]
+white = { diffuse = 0.75 }
+lamp = { emit = 1 }
+
+[[object]]
+shape = { rectangle = { size = [4, 4] } }
+material = "lamp"
+transform = [{ rotate_x = 90 }, { translate = [0, 6, 0] }]
+"#;
+
+/// Small tori and balls, turned anyhow, in a cube of side 4; every `ball_every`-th is a ball.
+fn cloud(objects: usize, ball_every: usize) -> String {
+    let mut rng = Pcg64Mcg::seed_from_u64(11);
+    let mut text = String::from(HEAD);
+    // A constant share of the lines through the cube meets something, however many there are.
+    let size = 1.5 / (objects as f64).sqrt();
+    for i in 0..objects {
+        let [x, y, z] = (2.0 * cubed(&mut rng)).to_array();
+        let [a, b]: [f64; 2] = rng.random();
+        let shape = if i % ball_every == 0 {
+            "{ sphere = {} }"
+        } else {
+            "{ implicit = \"torus\" }"
+        };
+        write!(
+            text,
+            "\n[[object]]\nshape = {shape}\nmaterial = \"white\"\ntransform = [{{ scale = {size} }}, \
+             {{ rotate_x = {} }}, {{ rotate_y = {} }}, {{ translate = [{x}, {y}, {z}] }}]\n",
+            360.0 * a,
+            360.0 * b,
+        )
+        .unwrap();
+    }
+    text
+}
+
+fn parsed(text: &str) -> Scene {
+    scene::parse("many", text, Path::new(""), &Overrides::default()).unwrap()
+}
+
+/// Rays from outside towards places in the cloud, and from within it.
+fn rays(count: usize) -> Vec<Ray> {
+    let mut rng = Pcg64Mcg::seed_from_u64(12);
+    let mut ray = |i: usize| {
+        let to = 2.0 * cubed(&mut rng);
+        let from = if i.is_multiple_of(2) { 9.0 } else { 2.0 } * cubed(&mut rng);
+        Ray {
+            origin: from,
+            direction: to - from,
+        }
+    };
+    (0..count).map(&mut ray).collect()
+}
+
+/// The first hit, as object and t.
+fn hit(tracer: &Tracer, ray: Ray) -> Option<(usize, f64)> {
+    match tracer.first(ray) {
+        First::Hit(hit) => Some((hit.object, hit.t)),
+        First::Nothing => None,
+        First::Undecided(finder) => panic!("{finder} is undecided on {ray:?}"),
+    }
+}
+
+#[test]
+fn the_first_hit_among_many_is_the_first_of_the_single_ones() {
+    let scene = parsed(&cloud(120, 4));
+    let many = Tracer::new(&scene).unwrap();
+    let single: Vec<Tracer> = (0..scene.objects.len())
+        .map(|k| {
+            let mut alone = scene.clone();
+            alone.objects = vec![scene.objects[k].clone()];
+            Tracer::new(&alone).unwrap()
+        })
+        .collect();
+    let mut hits = 0;
+    for ray in rays(400) {
+        let first = single
+            .iter()
+            .enumerate()
+            .filter_map(|(k, tracer)| Some((k, hit(tracer, ray)?.1)))
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        assert_eq!(hit(&many, ray), first, "{ray:?}");
+        hits += usize::from(first.is_some());
+    }
+    assert!(hits > 100, "{hits} hits show nothing");
+}
+
+/// A ray that misses every box meets nothing, whatever its direction's components are.
+#[test]
+fn rays_along_the_axes_ask_the_index_too() {
+    let scene = parsed(&cloud(120, 4));
+    let tracer = Tracer::new(&scene).unwrap();
+    let clear = Ray {
+        origin: DVec3::new(-50.0, 40.0, 0.0),
+        direction: DVec3::X,
+    };
+    assert_eq!(hit(&tracer, clear), None);
+    let at_lamp = Ray {
+        origin: DVec3::new(0.5, 50.0, 0.5),
+        direction: -DVec3::Y,
+    };
+    assert_eq!(hit(&tracer, at_lamp), Some((0, 44.0)));
+}
+
+/// Questions about implicit surfaces for each ray of a small render, all bounces and shadows.
+fn questions_a_ray(objects: usize) -> f64 {
+    let scene = parsed(&cloud(objects, usize::MAX));
+    let plan = Plan::new(&scene, false).unwrap();
+    let request = Request::whole(scene.image.size, scene.image.spp);
+    let rungs = render(&plan, &request, &mut Unwatched).rungs;
+    rungs.implicit.rays() as f64 / rungs.rays as f64
+}
+
+/// A list asks 64 of 64 and 1 000 of 1 000. In a cloud of constant total cross-section a line runs
+/// through boxes whose number grows with the cube root of theirs, 2.5 between these two; twice that is
+/// far from the 16 of a list.
+#[test]
+fn a_ray_asks_few_of_a_thousand_tori() {
+    let (few, many) = (questions_a_ray(64), questions_a_ray(1000));
+    println!("questions a ray: {few:.2} of 64 tori, {many:.2} of 1 000");
+    assert!(many < 5.0 * few && many < 20.0, "{few} and {many}");
+}
