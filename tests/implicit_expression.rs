@@ -10,7 +10,7 @@ use etalon::field::expression::{
 use etalon::field::named::{self, SURFACES};
 use etalon::field::polynomial::{MOST_DEGREE, Polynomial};
 use etalon::field::tape::{Algebra, Binary, Operation, Tape, Unary};
-use etalon::scene::{self, Diagnostic, FinderChoice, Implicit, Overrides, Shape};
+use etalon::scene::{self, Diagnostic, FinderChoice, Implicit, Origin, Overrides, Shape};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
@@ -641,7 +641,7 @@ fn finders_are_the_object_s_else_the_image_s_unless_the_command_says() {
     };
     assert_eq!(heart.finder, FinderChoice::SphereTrace);
     let error = read(own, Some("intervall")).expect_err("a misspelt finder");
-    assert_eq!((error.origin.as_str(), error.column), ("--finder", 1));
+    assert_eq!((&error.origin, error.column), (&Origin::Finder, 1));
     assert_eq!(error.suggestion.as_deref(), Some("interval"));
 }
 

@@ -11,7 +11,7 @@ use etalon::study::axis::Axis;
 use etalon::study::choice::Choice;
 
 use super::values::{
-    Crop, GoalTarget, Layer, Panels, Pixel, PlanChoice, Seconds, Size, finite, instructions,
+    Crop, GoalTarget, Layer, Panels, Pixel, PlanChoice, Seconds, Size, axis, finite, instructions,
     setting, share,
 };
 
@@ -355,7 +355,7 @@ pub struct Study {
     #[arg(long, value_name = "NAME")]
     pub panel: Option<String>,
     /// Go over the values of this choice; may be given for several.
-    #[arg(long, value_name = "KEY=VALUES")]
+    #[arg(long, value_name = "KEY=VALUES", value_parser = axis)]
     pub over: Vec<Axis>,
     /// Independent renders of each point, at least 2.
     #[arg(long, value_name = "N", default_value_t = 16)]

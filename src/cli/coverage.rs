@@ -7,7 +7,7 @@ use etalon::render::Instructions;
 use etalon::scene::{self, Overrides};
 use etalon::study::choice::stem;
 use etalon::study::coverage::{Count, Coverage, SURVEY, Survey, cover};
-use etalon::study::subject::Subject;
+use etalon::study::subject::{Subject, SubjectError};
 
 use super::Answer;
 use super::args;
@@ -57,8 +57,10 @@ pub fn run(arguments: &args::Coverage) -> Result<Answer, CommandError> {
 
 /// One scene with each sampler.
 fn test(arguments: &args::Coverage, path: &Path) -> Result<Vec<(String, Coverage)>, CommandError> {
-    let failed =
-        |error: etalon::study::subject::SubjectError| CommandError::Study(error.to_string());
+    let failed = |error| match error {
+        SubjectError::Scene(error) => CommandError::Scene(error),
+        other => CommandError::Study(other.to_string()),
+    };
     let mut overrides = Overrides {
         set: arguments.set.clone(),
         ..Overrides::default()

@@ -10,7 +10,7 @@ use etalon::render::bins::BinError;
 use etalon::render::memory::TooLarge;
 use etalon::render::tile::Outside;
 use etalon::render::trace::Singular;
-use etalon::scene::SceneError;
+use etalon::scene::{Origin, SceneError};
 
 use super::trace::RayError;
 
@@ -18,7 +18,7 @@ use super::trace::RayError;
 #[derive(Debug, thiserror::Error)]
 pub enum CommandError {
     /// The scene cannot be had.
-    #[error(transparent)]
+    #[error("error: {}", scene_words(.0))]
     Scene(#[from] SceneError),
     /// The rays cannot be had.
     #[error(transparent)]
@@ -38,7 +38,7 @@ pub enum CommandError {
     #[error("error: {0}")]
     Plan(#[from] PlanError),
     /// Pictures cannot be compared.
-    #[error("error: {0}")]
+    #[error("error: {}", compare_words(.0))]
     Compare(#[from] CompareError),
     /// Pictures of different scenes: how they differ, and which of them is stale.
     #[error("error: {0}{sep}{1}", sep = if .1.is_empty() { "" } else { "; " })]
@@ -86,9 +86,32 @@ pub enum CommandError {
     #[error("error: cannot write the output: {0}")]
     Output(io::Error),
     /// A study cannot be carried out or shown.
-    #[error("error: {}", .0.trim_start_matches("error: "))]
+    #[error("error: {0}")]
     Study(String),
     /// An argument that does not fit the scene.
     #[error("error: {0}")]
     Arguments(String),
+}
+
+/// What a scene complains of; arguments are called as they are typed.
+pub fn scene_words(error: &SceneError) -> String {
+    let Some(diagnostic) = error.diagnostic() else {
+        return error.to_string();
+    };
+    let mut diagnostic = diagnostic.clone();
+    if !matches!(diagnostic.origin, Origin::File(_)) {
+        diagnostic.origin = Origin::File(format!("--{}", diagnostic.origin));
+    }
+    diagnostic.to_string()
+}
+
+/// Why pictures cannot be compared, and what to type.
+fn compare_words(error: &CompareError) -> String {
+    match error {
+        CompareError::NotFinite { .. } => {
+            format!("{error}: render it again, or find out with etalon replay where they come from")
+        }
+        CompareError::Sizes { .. } => format!("{error} (etalon render --size)"),
+        other => other.to_string(),
+    }
 }

@@ -5,13 +5,16 @@ mod watch;
 use std::path::{Path, PathBuf};
 
 use etalon::chart::{self, Curve, Figure, Key, curves, figures};
+use etalon::study::budget::{BudgetError, Fits};
+use etalon::study::grid::GridError;
 use etalon::study::own::MARGIN;
+use etalon::study::reference::ReferenceError;
 use etalon::study::run::{Request, Study, run as run_study};
-use etalon::study::subject::Subject;
+use etalon::study::subject::{Subject, SubjectError};
 use etalon::study::{StudyError, choice, report};
 
 use super::args;
-use super::error::CommandError;
+use super::error::{CommandError, scene_words};
 use super::render::{progress, say, threads};
 use super::{Answer, tell};
 use watch::Shown;
@@ -37,8 +40,45 @@ pub fn run(arguments: &args::Study) -> Result<Answer, CommandError> {
     Ok(Answer::Good)
 }
 
+/// What a study complains of, and what to type instead.
 fn said(error: &StudyError) -> CommandError {
-    CommandError::Study(error.to_string())
+    CommandError::Study(match error {
+        StudyError::OneReplicate => format!("--replicates: {error}"),
+        StudyError::Subject(SubjectError::Scene(scene)) => scene_words(scene),
+        StudyError::Grid(GridError::Twice(_)) => {
+            format!("{error}: put all its values into one --over")
+        }
+        StudyError::Reference(ReferenceError::NoVariance(_)) => {
+            format!("{error}, or use --reference auto")
+        }
+        StudyError::Reference(ReferenceError::Size { found: [x, y], .. }) => format!(
+            "{error}: set the scene's size with --set 'image.size=[{x}, {y}]', or use another \
+             reference"
+        ),
+        StudyError::Budget(BudgetError::Memory { size: [x, y], .. }) => {
+            format!("{error} (--set 'image.size=[{x}, {y}]')")
+        }
+        StudyError::Budget(BudgetError::Seconds {
+            needed,
+            budget,
+            enough,
+            fits,
+        }) => {
+            let instead = match fits {
+                Fits::AxisTo(_) => ",",
+                Fits::Samples(n) => &format!(" (--set image.spp={n}),"),
+                Fits::NoSamples => "; use fewer --replicates,",
+                Fits::NoAxisTo(_) => {
+                    "; use fewer --replicates or curves, a smaller --set image.size,"
+                }
+            };
+            format!(
+                "the study would take about {needed:.0} s, its reference included, and --budget is \
+                 {budget:.0} s: {fits}{instead} or --budget {enough:.0}"
+            )
+        }
+        other => other.to_string(),
+    })
 }
 
 fn request(arguments: &args::Study) -> Result<Request, CommandError> {

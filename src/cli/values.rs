@@ -9,6 +9,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use etalon::render::Instructions;
 use etalon::render::layers;
 use etalon::render::tile::Window;
+use etalon::study::axis::{Axis, AxisError};
 
 /// What is wrong with a value.
 #[derive(Debug, thiserror::Error)]
@@ -207,6 +208,14 @@ pub fn finite(text: &str) -> Result<f64, String> {
         Ok(number) if number.is_finite() => Ok(number),
         _ => Err("not a finite number".to_owned()),
     }
+}
+
+/// An axis of a study.
+pub fn axis(text: &str) -> Result<Axis, String> {
+    text.parse().map_err(|error| match error {
+        AxisError::Key(_) => format!("{error}; anything else is set with --set"),
+        other => other.to_string(),
+    })
 }
 
 /// What a wanted error is an error of.

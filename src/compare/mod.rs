@@ -39,8 +39,7 @@ pub enum CompareError {
     },
     /// Values that are not numbers.
     #[error(
-        "{} has {count} values that are not finite in channel {channel}, the first at pixel {},{}: \
-         render it again, or find out with etalon replay where they come from",
+        "{} has {count} values that are not finite in channel {channel}, the first at pixel {},{}",
         path.display(), first[0], first[1]
     )]
     NotFinite {
@@ -63,8 +62,7 @@ pub enum CompareError {
     },
     /// Pictures of different sizes.
     #[error(
-        "{} has {}x{} pixels and {} has {}x{}: only pictures of one size can be compared \
-         (etalon render --size)",
+        "{} has {}x{} pixels and {} has {}x{}: only pictures of one size can be compared",
         paths[0].display(), sizes[0][0], sizes[0][1], paths[1].display(), sizes[1][0], sizes[1][1]
     )]
     Sizes {

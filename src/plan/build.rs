@@ -9,9 +9,10 @@ use super::occluders::occluders;
 use crate::camera::LaneCamera;
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::list::List;
-use crate::integrate::model::{Checker, Many, Model, ObjectShading, Scatter};
+use crate::integrate::model::{Appearance, Many, Model};
 use crate::integrate::parts::Parts;
 use crate::light::{self, LaneLight, LightShape, SmallLights};
+use crate::material::{MaterialKind, Record};
 use crate::math::affine::Affine;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Sequence;
@@ -68,7 +69,7 @@ pub fn build<T: Scalar>(
         let lit: Vec<u32> = lights.iter().map(|light| light.object).collect();
         occluders(scene, &lit, T::ROUNDOFF)
     };
-    let parts = Parts::new(&builder.shapes, &builder.shading);
+    let parts = Parts::new(&builder.shapes, &builder.appearances);
     let list_costs: usize = builder
         .bounded
         .iter()
@@ -101,7 +102,7 @@ pub fn build<T: Scalar>(
         parts,
         shapes: builder.shapes,
         implicits: builder.implicits,
-        shading: builder.shading,
+        appearances: builder.appearances,
         small_lights: SmallLights::new(&lights).map(Box::new),
         lights,
         environment,
@@ -126,7 +127,7 @@ struct Builder<'a, T> {
     known_indices: Vec<(RefractiveIndex, [u32; 2])>,
     shapes: Vec<LaneShape<T>>,
     implicits: Vec<(u32, LaneImplicit<T>)>,
-    shading: Vec<ObjectShading<T>>,
+    appearances: Vec<Appearance<T>>,
     lights: Vec<(LaneLight<T>, f64)>,
     resolver: Resolver,
     bounded: Vec<(u32, Bounds)>,
@@ -147,7 +148,7 @@ impl<'a, T: Scalar> Builder<'a, T> {
             known_indices: Vec::new(),
             shapes: Vec::new(),
             implicits: Vec::new(),
-            shading: Vec::new(),
+            appearances: Vec::new(),
             lights: Vec::new(),
             resolver: Resolver::default(),
             bounded: Vec::new(),
@@ -225,64 +226,73 @@ impl<'a, T: Scalar> Builder<'a, T> {
         Some(Placement { to_world, inverse })
     }
 
+    /// A surface as the loop reads it.
+    fn record(&mut self, object: &Object, surface: &Surface) -> Record<T> {
+        let mut record = Record {
+            kind: MaterialKind::Black,
+            texture: None,
+            spectra: [0; 2],
+            numbers: [T::default(); 3],
+            disperses: false,
+        };
+        match surface {
+            Surface::Black => {}
+            Surface::Diffuse(albedo) => {
+                record.kind = MaterialKind::Diffuse;
+                record.spectra[0] = self.spectrum(albedo);
+            }
+            Surface::Conductor(index) => {
+                record.kind = MaterialKind::Conductor;
+                record.spectra = self.refractive_index(index);
+            }
+            Surface::IdealMirror(reflectance) => {
+                record.kind = MaterialKind::Mirror;
+                record.spectra[0] = self.spectrum(reflectance);
+            }
+            Surface::Glass(index) => {
+                record.kind = MaterialKind::Glass;
+                record.spectra = self.refractive_index(index);
+                record.disperses = index.disperses();
+            }
+            Surface::Checkerboard { albedo, cell } => {
+                record.kind = MaterialKind::Diffuse;
+                record.texture = Some(MaterialKind::Checkerboard);
+                record.spectra = [self.spectrum(&albedo[0]), self.spectrum(&albedo[1])];
+                record.numbers = object.size.to_array().map(|s| T::from_f64(s / cell));
+            }
+        }
+        record
+    }
+
     /// Gives object `index` its appearance, and makes a light of it if it can be sampled.
     fn dress(&mut self, scene: &Scene, index: usize, placement: &Placement) {
         let object = &scene.objects[index].value;
         let material = &scene.materials[object.material].value;
-        let mut shading = ObjectShading {
-            scatter: Scatter::Black,
-            spectrum: 0,
-            extinction: 0,
-            disperses: false,
-            checker: None,
+        let mut appearance = Appearance {
+            surface: self.record(object, &material.surface),
             emission: None,
             emits: [false; 2],
             light: None,
             material: object.material as u32,
         };
-        match &material.surface {
-            Surface::Black => {}
-            Surface::Diffuse(albedo) => {
-                shading.scatter = Scatter::Diffuse;
-                shading.spectrum = self.spectrum(albedo);
-            }
-            Surface::Conductor(index) => {
-                shading.scatter = Scatter::Conductor;
-                [shading.spectrum, shading.extinction] = self.refractive_index(index);
-            }
-            Surface::IdealMirror(reflectance) => {
-                shading.scatter = Scatter::IdealMirror;
-                shading.spectrum = self.spectrum(reflectance);
-            }
-            Surface::Glass(index) => {
-                shading.scatter = Scatter::Glass;
-                shading.spectrum = self.refractive_index(index)[0];
-                shading.disperses = index.disperses();
-            }
-            Surface::Checkerboard { albedo, cell } => {
-                shading.scatter = Scatter::Diffuse;
-                shading.spectrum = self.spectrum(&albedo[0]);
-                shading.checker = Some(Checker {
-                    frequency: object.size.to_array().map(|s| T::from_f64(s / cell)),
-                    odd: self.spectrum(&albedo[1]),
-                });
-            }
-        }
         if let Some(emission) = &material.emission {
-            shading.emission = Some(self.spectrum(&emission.radiance));
-            shading.emits = sides(emission.sides);
+            appearance.emission = Some(self.spectrum(&emission.radiance));
+            appearance.emits = sides(emission.sides);
             let kind = object.shape.kind();
-            if let Some((shape, area)) =
-                light::of_shape(kind, &placement.to_world, &placement.inverse, shading.emits)
-            {
+            if let Some((shape, area)) = light::of_shape(
+                kind,
+                &placement.to_world,
+                &placement.inverse,
+                appearance.emits,
+            ) {
                 let power = area * std::f64::consts::PI * strength(&emission.radiance);
                 if power > 0.0 {
-                    shading.light = Some(self.lights.len() as u32);
+                    appearance.light = Some(self.lights.len() as u32);
                     self.light(shape, power, emission, index as u32);
                 }
             }
         }
-        self.shading.push(shading);
+        self.appearances.push(appearance);
     }
 
     fn light(&mut self, shape: LightShape<T>, power: f64, emission: &Emission, object: u32) {

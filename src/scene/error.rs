@@ -7,7 +7,7 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// The operating system would not hand over the file.
-    #[error("error: cannot read {}: {reason}", path.display())]
+    #[error("cannot read {}: {reason}", path.display())]
     Unreadable {
         /// The file asked for.
         path: PathBuf,
@@ -15,13 +15,13 @@ pub enum SceneError {
         reason: std::io::Error,
     },
     /// The path names a directory.
-    #[error("error: {} is a directory\n  = expected: a scene file (TOML)", path.display())]
+    #[error("{} is a directory\n  = expected: a scene file (TOML)", path.display())]
     Directory {
         /// The path asked for.
         path: PathBuf,
     },
     /// The file has more bytes than any sensible scene.
-    #[error("error: {} is larger than {limit} bytes\n  = expected: a scene file of at most {limit} bytes", path.display())]
+    #[error("{} is larger than {limit} bytes\n  = expected: a scene file of at most {limit} bytes", path.display())]
     TooLarge {
         /// The file asked for.
         path: PathBuf,
@@ -43,13 +43,37 @@ impl SceneError {
     }
 }
 
+/// A text that a scene is read from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Origin {
+    /// A scene file, by the name that it has in messages.
+    File(String),
+    /// An entry of [`Overrides::set`](super::Overrides::set), as `key=value`.
+    Set,
+    /// [`Overrides::panel`](super::Overrides::panel).
+    Panel,
+    /// [`Overrides::finder`](super::Overrides::finder).
+    Finder,
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::File(name) => name,
+            Self::Set => "set",
+            Self::Panel => "panel",
+            Self::Finder => "finder",
+        })
+    }
+}
+
 /// One complaint with its place; `Display` shows it in the manner of rustc.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
     /// What is wrong.
     pub message: String,
-    /// File path, or `--set` / `--panel` for an argument.
-    pub origin: String,
+    /// The text it is about.
+    pub origin: Origin,
     /// Line, counted from 1.
     pub line: usize,
     /// Column in characters, counted from 1.
@@ -73,7 +97,13 @@ const LEAD: usize = 40;
 
 impl Diagnostic {
     /// A complaint about the bytes `start..end` of `text`.
-    pub(super) fn at(origin: &str, text: &str, start: usize, end: usize, message: String) -> Self {
+    pub(super) fn at(
+        origin: Origin,
+        text: &str,
+        start: usize,
+        end: usize,
+        message: String,
+    ) -> Self {
         let start = floor_boundary(text, start);
         let end = floor_boundary(text, end.max(start));
         let byte_order_mark = if text.starts_with('\u{feff}') { 3 } else { 0 };
@@ -97,7 +127,7 @@ impl Diagnostic {
         let indent = column - skipped;
         Self {
             message,
-            origin: origin.to_owned(),
+            origin,
             line: text[..start].matches('\n').count() + 1,
             column: column + 1,
             excerpt: excerpt.trim_end().to_owned(),
@@ -131,7 +161,7 @@ impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let number = self.line.to_string();
         let gutter = " ".repeat(number.len());
-        writeln!(f, "error: {}", self.message)?;
+        writeln!(f, "{}", self.message)?;
         writeln!(
             f,
             "{gutter}--> {}:{}:{}",

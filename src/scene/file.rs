@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::build;
-use super::error::{Diagnostic, SceneError};
+use super::error::{Diagnostic, Origin, SceneError};
 use super::fields::{Complaint, Fields, Report};
 use super::overlay::{self, Setting};
 use super::tree::{self, Entry, Node, Origins, Place, Table, Value};
@@ -14,7 +14,7 @@ use super::{Scene, Source};
 /// The largest scene file (and data file) accepted, bytes.
 pub const LARGEST_FILE: u64 = 16 << 20;
 
-/// What the command line changes in a scene file.
+/// What is laid over a scene file.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Overrides {
     /// Name of the panel to lay over the file's own scene.
@@ -55,7 +55,13 @@ pub fn read(path: &Path) -> Result<String, SceneError> {
         let at = error.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(error.as_bytes());
         let name = path.display().to_string();
-        let mut diagnostic = Diagnostic::at(&name, &text, at, at + 1, "not UTF-8 text".to_owned());
+        let mut diagnostic = Diagnostic::at(
+            Origin::File(name),
+            &text,
+            at,
+            at + 1,
+            "not UTF-8 text".to_owned(),
+        );
         diagnostic.expected = Some("a scene file (TOML) in UTF-8".to_owned());
         SceneError::Invalid(Box::new(diagnostic))
     })
@@ -96,7 +102,7 @@ pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, SceneError> {
 ///
 /// # Errors
 /// Anything that is not a valid scene, in the file's own scene or any of its panels; the first
-/// error in the order of the file is reported. With `--set` only the scene asked for is checked.
+/// error in the order of the file is reported. With [`Overrides::set`] only the scene asked for is checked.
 pub fn parse(
     path_for_messages: &str,
     text: &str,
@@ -186,17 +192,19 @@ const START: Place = Place {
     end: 0,
 };
 
-/// The file, the `--set` arguments, the `--panel` argument, and last the `--finder` argument.
-fn origins<'a>(path: &'a str, text: &str, options: &Overrides) -> Origins<'a> {
-    let mut texts = vec![(path, text.to_owned())];
+/// The file, the settings, the panel, and last the finder.
+fn origins(path: &str, text: &str, options: &Overrides) -> Origins {
+    let mut texts = vec![(Origin::File(path.to_owned()), text.to_owned())];
     let set = options.set.iter();
-    texts.extend(set.map(|(key, value)| ("--set", format!("{key}={value}"))));
-    texts.extend(options.panel.iter().map(|name| ("--panel", name.clone())));
-    texts.extend(options.finder.iter().map(|name| ("--finder", name.clone())));
+    texts.extend(set.map(|(key, value)| (Origin::Set, format!("{key}={value}"))));
+    let panel = options.panel.iter();
+    texts.extend(panel.map(|name| (Origin::Panel, name.clone())));
+    let finder = options.finder.iter();
+    texts.extend(finder.map(|name| (Origin::Finder, name.clone())));
     Origins { texts }
 }
 
-fn parse_tree(origins: &Origins<'_>, text: &str) -> Result<Table, SceneError> {
+fn parse_tree(origins: &Origins, text: &str) -> Result<Table, SceneError> {
     tree::parse(text, 0, 0).map_err(|error| {
         let span = error.span().unwrap_or(0..0);
         let place = Place {
@@ -213,7 +221,7 @@ fn parse_tree(origins: &Origins<'_>, text: &str) -> Result<Table, SceneError> {
     })
 }
 
-fn invalid(origins: &Origins<'_>, complaint: Complaint) -> SceneError {
+fn invalid(origins: &Origins, complaint: Complaint) -> SceneError {
     let mut diagnostic = origins.diagnostic(complaint.place, complaint.message);
     diagnostic.expected = complaint.expected;
     diagnostic.suggestion = complaint.suggestion;

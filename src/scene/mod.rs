@@ -17,7 +17,7 @@ mod spectra;
 mod transform;
 mod tree;
 
-pub use error::{Diagnostic, SceneError};
+pub use error::{Diagnostic, Origin, SceneError};
 pub use file::{LARGEST_FILE, Overrides, load, panel_names, parse, read};
 
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Laying panels and `--set` arguments over the file.
+//! Laying panels and settings over the file.
 
 use super::fields::{Complaint, Report};
 use super::tree::{self, Entry, Node, Place, Table, Value};
@@ -39,7 +39,7 @@ const COMPANIONS: &[(&str, &str)] = &[
     ("implicit", "steps"),
 ];
 
-/// Deepest `--set` path.
+/// Deepest path of a setting.
 const DEPTH: usize = 32;
 
 /// Lays `over` over `base`: tables are merged key by key, anything else is replaced.
@@ -106,7 +106,7 @@ pub(super) fn use_finder(root: &mut Table, place: Place, name: &str) {
     }
 }
 
-/// One `--set` argument.
+/// One setting: a path and a value.
 #[derive(Debug, Clone)]
 pub(super) struct Setting {
     path: Vec<String>,

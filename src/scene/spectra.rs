@@ -239,8 +239,7 @@ impl<'a> Spectra<'a> {
             Err(error) => {
                 let error = error.to_string();
                 let first = error.lines().next().unwrap_or_default();
-                let message = first.trim_start_matches("error: ").to_owned();
-                return fail(message, "a file relative to the scene file");
+                return fail(first.to_owned(), "a file relative to the scene file");
             }
         };
         let rows = "rows of two finite numbers, wavelength in nm (increasing) and value";

@@ -1,11 +1,11 @@
 //! The TOML document as a tree in which every key and value knows where it was written.
 //!
-//! Panels and `--set` lay parts of other origins over the file's own, so a place is a pair of
+//! Panels and settings lay parts of other origins over the file's own, so a place is a pair of
 //! origin and byte range.
 
 use toml_edit::{Document, Item, TableLike, TomlError};
 
-use super::error::Diagnostic;
+use super::error::{Diagnostic, Origin};
 
 /// Where something was written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -19,19 +19,16 @@ pub(super) struct Place {
 }
 
 /// The texts that places refer to, with the names they go by in messages.
-pub(super) struct Origins<'a> {
+pub(super) struct Origins {
     /// Name and text of each.
-    pub texts: Vec<(&'a str, String)>,
+    pub texts: Vec<(Origin, String)>,
 }
 
-impl Origins<'_> {
+impl Origins {
     /// A diagnostic at a place.
     pub fn diagnostic(&self, place: Place, message: String) -> Diagnostic {
-        let (name, text) = self
-            .texts
-            .get(place.origin)
-            .map_or(("", ""), |(name, text)| (*name, text.as_str()));
-        Diagnostic::at(name, text, place.start, place.end, message)
+        let (origin, text) = &self.texts[place.origin];
+        Diagnostic::at(origin.clone(), text, place.start, place.end, message)
     }
 }
 

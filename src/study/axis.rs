@@ -20,7 +20,7 @@ pub enum AxisError {
     )]
     Form(String),
     /// A key that a study cannot go over.
-    #[error("a study cannot go over \"{0}\": it can go over {known}; anything else is set with --set", known = known())]
+    #[error("a study cannot go over \"{0}\": it can go over {known}", known = known())]
     Key(String),
     /// The values of a range are not whole numbers, or it has no end.
     #[error(

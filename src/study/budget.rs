@@ -33,26 +33,51 @@ pub struct Estimated {
     pub replicates: u32,
 }
 
+/// What of a study would fit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fits {
+    /// An axis of samples a pixel that ends here.
+    AxisTo(u32),
+    /// So many samples a pixel at every point.
+    Samples(u32),
+    /// No number of samples.
+    NoSamples,
+    /// Not even an axis of samples a pixel that ends here.
+    NoAxisTo(u32),
+}
+
+impl std::fmt::Display for Fits {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::AxisTo(end) => write!(f, "an axis that ends at spp={end} would fit"),
+            Self::Samples(n) => write!(f, "{n} samples a pixel would fit"),
+            Self::NoSamples => f.write_str("no number of samples does"),
+            Self::NoAxisTo(end) => write!(f, "even spp from 1 to {end} does not fit"),
+        }
+    }
+}
+
 /// Why a study is not begun.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BudgetError {
     /// It would take too long.
     #[error(
-        "the study would take about {needed:.0} s, its reference included, and --budget is {budget:.0} s: {advice}"
+        "the study would take about {needed:.0} s, its reference included, and may take {budget:.0} s: {fits}"
     )]
     Seconds {
         /// Estimated seconds.
         needed: f64,
         /// Allowed seconds.
         budget: f64,
+        /// A budget that would do, seconds.
+        enough: f64,
         /// What would fit.
-        advice: String,
+        fits: Fits,
     },
     /// It would not fit into memory.
     #[error(
-        "the study needs about {} MiB of memory, and {} MiB are available: a picture of {}x{} pixels would fit \
-         (--set 'image.size=[{}, {}]')",
-        needed >> 20, available >> 20, size[0], size[1], size[0], size[1]
+        "the study needs about {} MiB of memory, and {} MiB are available: a picture of {}x{} pixels would fit",
+        needed >> 20, available >> 20, size[0], size[1]
     )]
     Memory {
         /// Estimated bytes.
@@ -131,12 +156,8 @@ pub fn plan(curves: &Estimated, budget: f64) -> Result<Axis, BudgetError> {
         BudgetError::Seconds {
             needed,
             budget,
-            advice: format!(
-                "even spp from 1 to {} does not fit; use fewer --replicates or curves, a smaller \
-                 --set image.size, or --budget {:.0}",
-                1 << SHORTEST_AXIS,
-                (needed / PLANNED).ceil()
-            ),
+            enough: (needed / PLANNED).ceil(),
+            fits: Fits::NoAxisTo(1 << SHORTEST_AXIS),
         }
     })?;
     Ok(Axis {
@@ -160,27 +181,25 @@ pub fn check(
     if needed <= budget {
         return Ok(needed);
     }
-    let advice = if grid.abscissa.key == Key::Spp {
-        shorter(points, samples, cost, budget)
+    let fits = if grid.abscissa.key == Key::Spp {
+        shorter(points, samples, cost, budget).map(Fits::AxisTo)
     } else {
         let most = samples.iter().copied().max().unwrap_or(1);
         let fits = |n: &u32| cost.seconds(&vec![*n; points.len()]) <= budget;
         let smaller = (0..most.ilog2()).rev().map(|k| 1 << k).find(fits);
-        smaller.map(|n| format!("{n} samples a pixel (--set image.spp={n})"))
+        smaller.map(Fits::Samples)
     };
-    let advice = advice.map_or_else(
-        || "no number of samples does; use fewer --replicates, or".to_owned(),
-        |advice| format!("{advice} would fit, or"),
-    );
+    let fits = fits.unwrap_or(Fits::NoSamples);
     Err(BudgetError::Seconds {
         needed,
         budget,
-        advice: format!("{advice} --budget {:.0}", needed.ceil()),
+        enough: needed.ceil(),
+        fits,
     })
 }
 
 /// The largest end of an axis of samples that fits.
-fn shorter(points: &[Point], samples: &[u32], cost: &Estimated, budget: f64) -> Option<String> {
+fn shorter(points: &[Point], samples: &[u32], cost: &Estimated, budget: f64) -> Option<u32> {
     let mut ends: Vec<u32> = samples.to_vec();
     ends.sort_unstable();
     ends.dedup();
@@ -193,8 +212,7 @@ fn shorter(points: &[Point], samples: &[u32], cost: &Estimated, budget: f64) -> 
         };
         part.seconds(&kept.iter().map(|i| samples[*i]).collect::<Vec<_>>())
     };
-    let end = ends.iter().rev().find(|end| seconds(**end) <= budget)?;
-    Some(format!("an axis that ends at spp={end}"))
+    ends.into_iter().rev().find(|end| seconds(*end) <= budget)
 }
 
 /// Checks that pictures of this size can be rendered and compared with this much memory.

@@ -25,7 +25,7 @@ pub struct Point {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum GridError {
     /// One axis given twice.
-    #[error("the axis {0} is given twice: put all its values into one --over")]
+    #[error("the axis {0} is given twice")]
     Twice(&'static str),
 }
 

@@ -30,9 +30,7 @@ use crate::render::seeds;
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// One replicate has no spread.
-    #[error(
-        "--replicates: a study needs at least 2 independent renders of a point to know its errors' spread"
-    )]
+    #[error("a study needs at least 2 independent renders of a point to know its errors' spread")]
     OneReplicate,
     /// `center` estimates another picture than the other samplers.
     #[error(

@@ -35,13 +35,13 @@ pub enum ReferenceError {
     /// It does not say how well it is known.
     #[error(
         "{}: it has no channels variance.R, variance.G, variance.B, so what of a measured error is its own \
-         cannot be told; render it with replicates and write them, or use --reference auto", .0.display()
+         cannot be told; render it with replicates and write them", .0.display()
     )]
     NoVariance(PathBuf),
     /// Another size.
     #[error(
-        "{}: it has {}x{} pixels, the scene {}x{}: set the scene's size with --set 'image.size=[{}, {}]', or \
-         use another reference", path.display(), found[0], found[1], wanted[0], wanted[1], found[0], found[1]
+        "{}: it has {}x{} pixels, the scene {}x{}",
+        path.display(), found[0], found[1], wanted[0], wanted[1]
     )]
     Size {
         /// The file.

@@ -31,7 +31,7 @@ pub enum SubjectError {
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// It cannot be planned.
-    #[error("error: at {at}: {reason}")]
+    #[error("at {at}: {reason}")]
     Plan {
         /// What is chosen there.
         at: String,

@@ -6,12 +6,12 @@
 //! both are also planted in the loop itself, where scenes may have all directions.
 
 use etalon::camera::LaneCamera;
-use etalon::integrate::model::{Model, Scatter};
+use etalon::integrate::model::{Appearance, Model};
 use etalon::integrate::parts::Parts;
 #[cfg(feature = "planted")]
 use etalon::integrate::planted::Planted;
 use etalon::light::{LightShape, SmallLights};
-use etalon::material::fresnel;
+use etalon::material::{MaterialKind, fresnel};
 use etalon::math::lanes::Scalar;
 use etalon::plan::{Plan, Tables};
 use etalon::scene::{Scene, Surface};
@@ -137,18 +137,19 @@ fn middles() -> Vec<f64> {
 
 /// The loop reads appearances by part.
 fn refresh<T: Scalar>(model: &mut Model<T>) {
-    model.parts = Parts::new(&model.shapes, &model.shading);
+    model.parts = Parts::new(&model.shapes, &model.appearances);
 }
 
 fn reflectance<T: Scalar>(model: &mut Model<T>) -> bool {
-    let diffuse = |s: &&etalon::integrate::model::ObjectShading<T>| s.scatter == Scatter::Diffuse;
-    let Some(material) = model.shading.iter().find(diffuse).map(|s| s.material) else {
+    let diffuse = |a: &&Appearance<T>| a.surface.kind == MaterialKind::Diffuse;
+    let Some(material) = model.appearances.iter().find(diffuse).map(|s| s.material) else {
         return false;
     };
-    for object in 0..model.shading.len() {
-        let shading = model.shading[object];
-        if shading.material == material && shading.scatter == Scatter::Diffuse {
-            model.shading[object].spectrum = scaled(model, shading.spectrum, |_| 1.005);
+    for object in 0..model.appearances.len() {
+        let appearance = model.appearances[object];
+        if appearance.material == material && appearance.surface.kind == MaterialKind::Diffuse {
+            let spectrum = appearance.surface.spectra[0];
+            model.appearances[object].surface.spectra[0] = scaled(model, spectrum, |_| 1.005);
         }
     }
     refresh(model);
@@ -181,8 +182,8 @@ fn polarisation<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
     if scene.objects.len() != 1 {
         return false;
     }
-    for object in 0..model.shading.len() {
-        let material = &scene.materials[model.shading[object].material as usize].value;
+    for object in 0..model.appearances.len() {
+        let material = &scene.materials[model.appearances[object].material as usize].value;
         let Surface::Conductor(index) = &material.surface else {
             continue;
         };
@@ -194,8 +195,9 @@ fn polarisation<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
                 (2.0 * s + p) / 3.0
             })
             .collect();
-        model.shading[object].spectrum = model.spectra.push(&values);
-        model.shading[object].scatter = Scatter::IdealMirror;
+        let surface = &mut model.appearances[object].surface;
+        surface.spectra[0] = model.spectra.push(&values);
+        surface.kind = MaterialKind::Mirror;
         found = true;
     }
     if found {
@@ -219,9 +221,9 @@ fn wavelengths<T: Scalar>(model: &mut Model<T>) -> bool {
         let spectrum = model.lights[k].spectrum;
         model.lights[k].spectrum = scaled(model, spectrum, factor);
     }
-    for object in 0..model.shading.len() {
-        if let Some(emission) = model.shading[object].emission {
-            model.shading[object].emission = Some(scaled(model, emission, factor));
+    for object in 0..model.appearances.len() {
+        if let Some(emission) = model.appearances[object].emission {
+            model.appearances[object].emission = Some(scaled(model, emission, factor));
         }
     }
     model.small_lights = SmallLights::new(&model.lights).map(Box::new);
@@ -260,15 +262,15 @@ fn normals<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
         }
         found = true;
         let longer = |x: T| T::from_f64(x.to_f64() * length);
-        entry.part.vector = entry.part.vector.map(longer);
-        entry.part.level = longer(entry.part.level);
-        entry.part.half = longer(entry.part.half);
+        entry.vector = entry.vector.map(longer);
+        entry.level = longer(entry.level);
+        entry.half = longer(entry.half);
         if let Some(small) = &mut parts.small {
-            for (column, x) in small.vector.iter_mut().zip(entry.part.vector) {
+            for (column, x) in small.vector.iter_mut().zip(entry.vector) {
                 column[number] = x;
             }
-            small.level[number] = entry.part.level;
-            small.half[number] = entry.part.half;
+            small.level[number] = entry.level;
+            small.half[number] = entry.half;
         }
     }
     found

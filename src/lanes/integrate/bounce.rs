@@ -2,7 +2,7 @@
 
 use super::chunk::CHUNK;
 use super::intersect::{Leaving, NOTHING, Nearest, Rungs, lane_vector, nearest};
-use super::model::{Model, Scatter};
+use super::model::Model;
 use super::pool::{
     Carried, IntField, Pool, RealField, Rows, WIDEST, any, array, bit_where, each, flags, has,
     int_array,
@@ -10,6 +10,7 @@ use super::pool::{
 use super::replay::{ScatteredVertex, Vertex};
 use super::scatter::Scattered;
 use super::surface::{Arrival, Surfaces, surfaces};
+use crate::material::MaterialKind;
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 use crate::sample::Slot;
@@ -111,7 +112,7 @@ pub fn bounce<L: Lanes, const C: usize>(
         step.add(l, surface.emits, surface.emission, surface.emission_weight);
     }
 
-    let scatters = hit & !surface.scatter.same(l.int(Scatter::Black as u32));
+    let scatters = hit & !surface.kind.same(l.int(MaterialKind::Black as u32));
     let beyond = has(l, step.flags, flags::BEYOND);
     let within = step.depth.plus(l.int(1)).below(l.int(model.max_depth));
     let mut going = scatters & (within | beyond);

@@ -8,6 +8,7 @@
 pub mod bounce;
 pub mod chunk;
 pub mod develop;
+pub mod direct;
 pub mod dispatch;
 pub mod intersect;
 pub mod list;

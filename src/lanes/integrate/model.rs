@@ -4,6 +4,7 @@ use super::list::List;
 use super::parts::Parts;
 use crate::camera::LaneCamera;
 use crate::light::{LaneLight, SmallLights};
+use crate::material::Record;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Sequence;
 use crate::shape::hierarchy::{Bounds, Hierarchy, Item};
@@ -12,44 +13,11 @@ use crate::shape::lanes::implicit::LaneImplicit;
 use crate::shape::resolve::Resolver;
 use crate::spectrum::grid::SpectrumBank;
 
-/// How a surface scatters, as the loop dispatches on it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u32)]
-pub enum Scatter {
-    /// Nothing is reflected.
-    Black = 0,
-    /// Lambertian.
-    Diffuse = 1,
-    /// Smooth conductor, Fresnel.
-    Conductor = 2,
-    /// Mirror of constant reflectance.
-    IdealMirror = 3,
-    /// Smooth dielectric.
-    Glass = 4,
-}
-
-/// A checkerboard over object coordinates.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Checker<T> {
-    /// Cells per canonical unit along each axis.
-    pub frequency: [T; 3],
-    /// Spectrum of the odd cells.
-    pub odd: u32,
-}
-
 /// What an object looks like to the loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ObjectShading<T> {
-    /// Scattering kind.
-    pub scatter: Scatter,
-    /// Spectrum of the albedo, the reflectance or n.
-    pub spectrum: u32,
-    /// Spectrum of the extinction coefficient.
-    pub extinction: u32,
-    /// Whether n varies with wavelength.
-    pub disperses: bool,
-    /// Checkerboard, whose even cells have `spectrum`.
-    pub checker: Option<Checker<T>>,
+pub struct Appearance<T> {
+    /// How it scatters.
+    pub surface: Record<T>,
     /// Spectrum of the emitted radiance.
     pub emission: Option<u32>,
     /// Whether the front and the back emit.
@@ -164,8 +132,8 @@ pub struct Model<T: Scalar> {
     pub implicits: Vec<(u32, LaneImplicit<T>)>,
     /// What hits look like, by part.
     pub parts: Parts<T>,
-    /// Appearance by object.
-    pub shading: Vec<ObjectShading<T>>,
+    /// By object.
+    pub appearances: Vec<Appearance<T>>,
     /// Samplable lights.
     pub lights: Vec<LaneLight<T>>,
     /// The lights once more, where several can be sampled together.

@@ -1,6 +1,7 @@
 //! What the loop knows of each part of each object, by the part's number.
 
-use super::model::{ObjectShading, Scatter};
+use super::model::Appearance;
+use crate::material::SPECTRA;
 use crate::math::lanes::Scalar;
 use crate::math::lookup::SMALL;
 use crate::shape::lanes::LaneShape;
@@ -8,69 +9,141 @@ use crate::shape::lanes::part::{Part, PartKind};
 
 /// Bits of a part's word.
 pub mod word {
-    /// Mask of the [`super::Scatter`] kind.
-    pub const SCATTER: u32 = 7;
+    /// Mask of the [`MaterialKind`](crate::material::MaterialKind).
+    pub const KIND: u32 = 0xff;
     /// Two parallel faces.
-    pub const FACES: u32 = 1 << 3;
+    pub const FACES: u32 = 1 << 8;
     /// A ball.
-    pub const BALL: u32 = 1 << 4;
+    pub const BALL: u32 = 1 << 9;
     /// A shape that computes its own surface.
-    pub const OTHER: u32 = 1 << 5;
-    /// Glass that disperses.
-    pub const DISPERSES: u32 = 1 << 6;
-    /// A checkerboard.
-    pub const CHECKER: u32 = 1 << 7;
+    pub const OTHER: u32 = 1 << 10;
+    /// Refraction by the material disperses.
+    pub const DISPERSES: u32 = 1 << 11;
+    /// The spectra depend on the place.
+    pub const TEXTURED: u32 = 1 << 12;
     /// The outward side emits.
-    pub const EMITS_FRONT: u32 = 1 << 8;
+    pub const EMITS_FRONT: u32 = 1 << 13;
     /// The other side emits.
-    pub const EMITS_BACK: u32 = 1 << 9;
+    pub const EMITS_BACK: u32 = 1 << 14;
     /// Part of a convex closed shape, whose exits are seen from inside.
-    pub const CLOSED: u32 = 1 << 10;
+    pub const CLOSED: u32 = 1 << 15;
 }
 
 /// Marks objects that no light stands for.
 pub const NO_LIGHT: u32 = u32::MAX;
 
-/// One part.
+/// What is known of parts, as reals R and integers I: of one part as numbers ([`Entry`]), of a few as
+/// tables to look numbers up in, of those that a packet has met as lanes.
 #[derive(Debug, Clone, Copy)]
-pub struct Entry<T> {
-    /// The object it belongs to.
-    pub object: u32,
-    /// Its geometry.
-    pub part: Part<T>,
+pub struct Look<R, I> {
+    /// [`Part::vector`].
+    pub vector: [R; 3],
+    /// [`Part::level`].
+    pub level: R,
+    /// [`Part::half`].
+    pub half: R,
+    /// The object that the part belongs to.
+    pub object: I,
     /// Bits of [`word`].
-    pub word: u32,
-    /// Spectrum of albedo, reflectance or n.
-    pub spectrum: u32,
-    /// Spectrum of the extinction coefficient.
-    pub extinction: u32,
-    /// Spectrum of the emission.
-    pub emission: u32,
+    pub word: I,
+    /// The material's spectra: where they stand in the bank.
+    pub spectra: [I; SPECTRA],
+    /// The spectrum of the emission.
+    pub emission: I,
     /// The light that samples the object, or [`NO_LIGHT`].
-    pub light: u32,
+    pub light: I,
 }
 
+/// One part.
+pub type Entry<T> = Look<T, u32>;
+
 /// The entries by column, where they are few.
-#[derive(Debug, Clone)]
-pub struct SmallTable<T> {
-    /// [`Part::vector`].
-    pub vector: [[T; SMALL]; 3],
-    /// [`Part::level`].
-    pub level: [T; SMALL],
-    /// [`Part::half`].
-    pub half: [T; SMALL],
-    /// [`Entry::object`].
-    pub object: [u32; SMALL],
-    /// [`Entry::word`].
-    pub word: [u32; SMALL],
-    /// [`Entry::spectrum`].
-    pub spectrum: [u32; SMALL],
-    /// [`Entry::extinction`].
-    pub extinction: [u32; SMALL],
-    /// [`Entry::emission`].
-    pub emission: [u32; SMALL],
-    /// [`Entry::light`].
-    pub light: [u32; SMALL],
+pub type SmallTable<T> = Look<[T; SMALL], [u32; SMALL]>;
+
+impl<R, I> Look<R, I> {
+    /// Both together, column by column.
+    #[inline(always)]
+    pub fn zip<S, J, U, V>(
+        &self,
+        other: &Look<S, J>,
+        real: impl Fn(&R, &S) -> U,
+        int: impl Fn(&I, &J) -> V,
+    ) -> Look<U, V> {
+        Look {
+            vector: [
+                real(&self.vector[0], &other.vector[0]),
+                real(&self.vector[1], &other.vector[1]),
+                real(&self.vector[2], &other.vector[2]),
+            ],
+            level: real(&self.level, &other.level),
+            half: real(&self.half, &other.half),
+            object: int(&self.object, &other.object),
+            word: int(&self.word, &other.word),
+            spectra: [
+                int(&self.spectra[0], &other.spectra[0]),
+                int(&self.spectra[1], &other.spectra[1]),
+            ],
+            emission: int(&self.emission, &other.emission),
+            light: int(&self.light, &other.light),
+        }
+    }
+}
+
+impl Look<bool, bool> {
+    /// Which columns say anything, where `words` is the union of the words.
+    #[inline(always)]
+    pub fn wanted(words: u32) -> Self {
+        let emits = words & (word::EMITS_FRONT | word::EMITS_BACK) != 0;
+        Self {
+            vector: [true; 3],
+            level: true,
+            half: words & word::FACES != 0,
+            object: true,
+            word: true,
+            spectra: [true; SPECTRA],
+            emission: emits,
+            light: emits,
+        }
+    }
+}
+
+impl<T: Scalar> Entry<T> {
+    fn new(object: u32, part: &Part<T>, closed: bool, appearance: &Appearance<T>) -> Self {
+        Self {
+            vector: part.vector,
+            level: part.level,
+            half: part.half,
+            object,
+            word: word_of(part.kind, closed, appearance),
+            spectra: appearance.surface.spectra,
+            emission: appearance.emission.unwrap_or(0),
+            light: appearance.light.unwrap_or(NO_LIGHT),
+        }
+    }
+}
+
+impl<T: Scalar> SmallTable<T> {
+    fn of(entries: &[Entry<T>]) -> Self {
+        let empty = Self {
+            vector: [[T::default(); SMALL]; 3],
+            level: [T::default(); SMALL],
+            half: [T::default(); SMALL],
+            object: [0; SMALL],
+            word: [0; SMALL],
+            spectra: [[0; SMALL]; SPECTRA],
+            emission: [0; SMALL],
+            light: [0; SMALL],
+        };
+        entries.iter().enumerate().fold(empty, |table, (k, entry)| {
+            table.zip(entry, |c, x| with(c, k, *x), |c, x| with(c, k, *x))
+        })
+    }
+}
+
+fn with<V: Copy>(column: &[V; SMALL], k: usize, value: V) -> [V; SMALL] {
+    let mut column = *column;
+    column[k] = value;
+    column
 }
 
 /// All parts of a scene.
@@ -88,71 +161,39 @@ pub struct Parts<T> {
 
 impl<T: Scalar> Parts<T> {
     /// Of objects with their appearance.
-    pub fn new(shapes: &[LaneShape<T>], shading: &[ObjectShading<T>]) -> Self {
+    pub fn new(shapes: &[LaneShape<T>], appearances: &[Appearance<T>]) -> Self {
         let mut parts = Self::default();
-        for (k, (shape, shading)) in shapes.iter().zip(shading).enumerate() {
+        for (k, (shape, appearance)) in shapes.iter().zip(appearances).enumerate() {
             parts.first.push(parts.entries.len() as u32);
             let closed = shape.kind.is_some_and(|kind| !kind.is_flat());
-            for part in shape.parts() {
-                parts.entries.push(Entry {
-                    object: k as u32,
-                    part,
-                    word: word_of(part.kind, shading) | if closed { word::CLOSED } else { 0 },
-                    spectrum: shading.spectrum,
-                    extinction: shading.extinction,
-                    emission: shading.emission.unwrap_or(0),
-                    light: shading.light.unwrap_or(NO_LIGHT),
-                });
-            }
+            let own = shape.parts();
+            let own = own.iter();
+            parts
+                .entries
+                .extend(own.map(|part| Entry::new(k as u32, part, closed, appearance)));
         }
         parts.words = parts.entries.iter().fold(0, |all, e| all | e.word);
         if parts.entries.len() <= SMALL {
-            parts.small = Some(Box::new(SmallTable::new(&parts.entries)));
+            parts.small = Some(Box::new(SmallTable::of(&parts.entries)));
         }
         parts
     }
 }
 
-fn word_of<T>(kind: PartKind, shading: &ObjectShading<T>) -> u32 {
-    let kind = match kind {
+fn word_of<T>(kind: PartKind, closed: bool, appearance: &Appearance<T>) -> u32 {
+    let part = match kind {
         PartKind::Plane => 0,
         PartKind::Faces => word::FACES,
         PartKind::Ball => word::BALL,
         PartKind::Other => word::OTHER,
     };
     let bit = |on: bool, bit: u32| if on { bit } else { 0 };
-    let emits = |side: usize| shading.emission.is_some() && shading.emits[side];
-    kind | shading.scatter as u32
-        | bit(shading.disperses, word::DISPERSES)
-        | bit(shading.checker.is_some(), word::CHECKER)
+    let emits = |side: usize| appearance.emission.is_some() && appearance.emits[side];
+    let surface = &appearance.surface;
+    part | surface.kind as u32
+        | bit(surface.disperses, word::DISPERSES)
+        | bit(surface.texture.is_some(), word::TEXTURED)
         | bit(emits(0), word::EMITS_FRONT)
         | bit(emits(1), word::EMITS_BACK)
+        | bit(closed, word::CLOSED)
 }
-
-impl<T: Scalar> SmallTable<T> {
-    fn new(entries: &[Entry<T>]) -> Self {
-        fn column<T, V: Copy + Default>(
-            entries: &[Entry<T>],
-            value: impl Fn(&Entry<T>) -> V,
-        ) -> [V; SMALL] {
-            let mut column = [V::default(); SMALL];
-            for (place, entry) in column.iter_mut().zip(entries) {
-                *place = value(entry);
-            }
-            column
-        }
-        Self {
-            vector: [0, 1, 2].map(|i| column(entries, |e| e.part.vector[i])),
-            level: column(entries, |e| e.part.level),
-            half: column(entries, |e| e.part.half),
-            object: column(entries, |e| e.object),
-            word: column(entries, |e| e.word),
-            spectrum: column(entries, |e| e.spectrum),
-            extinction: column(entries, |e| e.extinction),
-            emission: column(entries, |e| e.emission),
-            light: column(entries, |e| e.light),
-        }
-    }
-}
-
-const _: () = assert!(Scatter::Glass as u32 <= word::SCATTER);

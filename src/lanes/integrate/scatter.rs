@@ -1,15 +1,12 @@
-//! How a packet of paths goes on from the surfaces it has met: lights sampled, directions chosen.
+//! How a packet of paths goes on from the surfaces it has met.
 
-use super::bounce::{Step, some_object};
-use super::intersect::{Leaving, NOTHING, Shadow, lane_vector, occluded};
-use super::model::Scatter;
+use super::bounce::Step;
+use super::direct::{Lit, Receiver};
+use super::intersect::Leaving;
 use super::pool::{WIDEST, any, array, bit_where, each, flags, has};
-use super::replay::LightVertex;
 use super::surface::Surfaces;
-use crate::light::Towards;
-use crate::material::fresnel;
+use crate::material::{MaterialKind, fresnel};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
-use crate::math::lookup::SMALL;
 use crate::math::vec3::Vec3;
 use crate::sample::Slot;
 use crate::sample::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
@@ -25,14 +22,6 @@ struct Incidence<L: Lanes> {
     cosine: L::Real,
     /// Direction of reflection.
     mirrored: Vec3<L::Real>,
-}
-
-/// What arrives from sampled lights.
-struct Lit<L: Lanes> {
-    /// Spectrum of the light.
-    spectrum: L::Int,
-    /// What its spectrum is multiplied with beside throughput and albedo; 0 where it is hidden.
-    weight: L::Real,
 }
 
 /// The scattered rays.
@@ -67,10 +56,10 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         };
         let kind = inlined(
             #[inline(always)]
-            |scatter: Scatter| going & surface.scatter.same(l.int(scatter as u32)),
+            |kind: MaterialKind| going & surface.kind.same(l.int(kind as u32)),
         );
         if needs.diffuse {
-            let diffuse = kind(Scatter::Diffuse);
+            let diffuse = kind(MaterialKind::Diffuse);
             if any(diffuse) {
                 self.diffuse(l, surface, diffuse, &mut next);
             }
@@ -84,17 +73,17 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             .min(l.real(1.0));
         let mirrored = ray.direction.along(facing, cosine + cosine);
         if needs.conductor {
-            let conductor = kind(Scatter::Conductor);
+            let conductor = kind(MaterialKind::Conductor);
             self.conductor(l, surface, cosine, conductor);
             next.direction = Vec3::select(l, conductor, mirrored, next.direction);
         }
         if needs.ideal_mirror {
-            let mirror = kind(Scatter::IdealMirror);
-            self.multiply_by(l, mirror, surface.spectrum);
+            let mirror = kind(MaterialKind::Mirror);
+            self.multiply_by(l, mirror, surface.spectra[0]);
             next.direction = Vec3::select(l, mirror, mirrored, next.direction);
         }
         if needs.glass {
-            let glass = kind(Scatter::Glass);
+            let glass = kind(MaterialKind::Glass);
             if any(glass) {
                 let incidence = Incidence {
                     direction: ray.direction,
@@ -119,8 +108,8 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     #[inline(always)]
     fn conductor(&mut self, l: L, surface: &Surfaces<L>, cosine: L::Real, m: L::Mask) {
         let (indices, extinctions) = (
-            self.table_rows(l, surface.spectrum),
-            self.table_rows(l, surface.extinction),
+            self.table_rows(l, surface.spectra[0]),
+            self.table_rows(l, surface.spectra[1]),
         );
         let table = self.model.spectra.rows::<C>();
         let cosines = array(l, cosine);
@@ -145,17 +134,21 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let normal = Vec3::select(l, surface.front, surface.normal, -surface.normal);
         let sequence = &self.model.sequence;
         let [u, v] = if self.model.lights.is_empty() {
-            self.multiply_by(l, diffuse, surface.spectrum);
+            self.multiply_by(l, diffuse, surface.spectra[0]);
             sequence.pair(l, self.id, Slot::Bsdf, self.depth)
         } else {
             let [light, bsdf] =
                 sequence.two_pairs(l, self.id, [Slot::Light, Slot::Bsdf], self.depth);
-            let leaving = Leaving {
-                object: surface.object,
-                inward: next.inward,
+            let receiver = Receiver {
+                point: surface.point,
+                normal,
+                leaving: Leaving {
+                    object: surface.object,
+                    inward: next.inward,
+                },
             };
-            let lit = self.lights(l, surface.point, normal, &leaving, diffuse, light);
-            self.reflect(l, diffuse, surface.spectrum, &lit);
+            let lit = self.direct(l, &receiver, diffuse, light);
+            self.reflect(l, diffuse, surface.spectra[0], &lit);
             bsdf
         };
         let local = cosine_hemisphere(l, u, v);
@@ -193,157 +186,6 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         }
     }
 
-    /// Next-event estimation: what arrives from one light a lane.
-    #[inline(always)]
-    fn lights(
-        &mut self,
-        l: L,
-        point: Vec3<L::Real>,
-        normal: Vec3<L::Real>,
-        leaving: &Leaving<L>,
-        diffuse: L::Mask,
-        numbers: [L::Real; 2],
-    ) -> Lit<L> {
-        let model = self.model;
-        let zero = l.real(0.0);
-        let [u, v] = numbers;
-        let (chosen, u) = self.choose_light(l, u, diffuse);
-        let numbers = [u, v];
-        let mut towards = Towards::<L> {
-            direction: normal,
-            distance: zero,
-            pdf: zero,
-            valid: l.mask(false),
-        };
-        let mut spectrum = l.int(0);
-        let mut except = l.int(NOTHING);
-        let mut extended = l.mask(true);
-        let mut left = diffuse;
-        if let Some(table) = &model.small_lights {
-            let spheres = diffuse & l.lookup_int(&table.is_sphere, chosen).same(l.int(1));
-            if any(spheres) {
-                let own = table
-                    .spheres
-                    .at(l, chosen)
-                    .sample(l, point, numbers, spheres);
-                towards = Towards {
-                    pdf: own.pdf * l.lookup(&table.probability, chosen),
-                    valid: spheres & own.valid,
-                    ..own
-                };
-                spectrum = l.lookup_int(&table.spectrum, chosen);
-                except = l.lookup_int(&table.object, chosen);
-                left = diffuse & !spheres;
-            }
-        }
-        let mut pending = left.bits();
-        while pending != 0 {
-            let k = l.int_lane(chosen, pending.trailing_zeros() as usize);
-            let here = diffuse & chosen.same(l.int(k));
-            pending &= !here.bits();
-            let light = &model.lights[k as usize];
-            let own = light.shape.sample(l, point, numbers);
-            let pdf = own.pdf * l.splat(light.probability);
-            let mut valid = here & own.valid;
-            if light.shape.is_flat() {
-                valid = valid & !leaving.object.same(l.int(light.object));
-            }
-            towards.direction = Vec3::select(l, here, own.direction, towards.direction);
-            towards.distance = l.select(here, own.distance, towards.distance);
-            towards.pdf = l.select(here, pdf, towards.pdf);
-            towards.valid = towards.valid | valid;
-            spectrum = l.select_int(here, l.int(light.spectrum), spectrum);
-            except = l.select_int(here, l.int(light.object), except);
-            if !light.shape.has_extent() {
-                extended = extended & !here;
-            }
-        }
-        let Towards {
-            direction,
-            distance,
-            pdf,
-            valid,
-        } = towards;
-        let cosine = direction.dot(normal);
-        // With q the ratio of the densities, the power heuristic is 1/(1 + q²) (see `sample::mis`),
-        // and bsdf · cos/pdf is q times the albedo.
-        let ratio = cosine_hemisphere_pdf(l, cosine) / pdf;
-        let shared = ratio / ratio.mul_add(ratio, l.real(1.0));
-        let weight = l.select(extended, shared, ratio);
-        #[cfg(feature = "planted")]
-        let weight = super::planted::light_weight(l, model.planted, weight, cosine);
-        let asked = diffuse & valid & cosine.gt(zero) & weight.gt(zero);
-        let mut lit = Lit {
-            spectrum,
-            weight: zero,
-        };
-        if !any(asked) {
-            return lit;
-        }
-        let shadow = Shadow {
-            ray: LaneRay::new(l, point, direction),
-            limit: distance,
-            except,
-        };
-        let blocked = occluded(l, model, &shadow, leaving, asked, self.rungs);
-        if let Some(vertex) = &mut self.vertex
-            && asked.bits() & 1 == 1
-        {
-            vertex.light = Some(LightVertex {
-                object: some_object(l.int_lane(except, 0)),
-                direction: lane_vector(l, direction, 0),
-                distance: l.lane(distance, 0).to_f64(),
-                weight: l.lane(weight, 0).to_f64(),
-                blocked: blocked.bits() & 1 == 1,
-            });
-        }
-        lit.weight = l.select(asked & !blocked, weight, zero);
-        lit
-    }
-
-    /// The number of each lane's light, by the lights' probabilities, and a number for its point:
-    /// of few lights u chooses, stretched afterwards from the share of [0, 1) that belongs to the
-    /// light over all of it; a number of its own, searched for, among many.
-    #[inline(always)]
-    fn choose_light(&self, l: L, u: L::Real, m: L::Mask) -> (L::Int, L::Real) {
-        let mut chosen = l.int(0);
-        let [first, others @ ..] = self.model.lights.as_slice() else {
-            return (chosen, u);
-        };
-        if others.is_empty() {
-            return (chosen, u);
-        }
-        if others.len() >= SMALL {
-            return (self.choose_among_many(l, m), u);
-        }
-        let mut below = l.splat(first.below);
-        let mut probability = l.splat(first.probability);
-        for (k, light) in others.iter().enumerate() {
-            let here = u.ge(l.splat(light.below));
-            chosen = l.select_int(here, l.int(k as u32 + 1), chosen);
-            below = l.select(here, l.splat(light.below), below);
-            probability = l.select(here, l.splat(light.probability), probability);
-        }
-        let largest = 1.0 - 1.0 / (1u64 << L::UNIFORM_BITS) as f64;
-        let stretched = ((u - below) / probability).min(l.real(largest));
-        (chosen, stretched)
-    }
-
-    /// The number of each lane's light where a share of the numbers' digits would be too coarse for
-    /// its point, and looking at every light too slow.
-    #[inline(never)]
-    fn choose_among_many(&self, l: L, m: L::Mask) -> L::Int {
-        let sequence = &self.model.sequence;
-        let variates = array(l, sequence.single(l, self.id, Slot::Choice, self.depth));
-        let lights = &self.model.lights;
-        let mut chosen = [0; WIDEST];
-        for i in each(m.bits()) {
-            let later = lights.partition_point(|light| light.below <= variates[i % WIDEST]);
-            chosen[i % WIDEST] = later.saturating_sub(1) as u32;
-        }
-        l.load_int(&chosen)
-    }
-
     /// Reflection or refraction at glass, chosen by the mean reflectance over the wavelengths
     /// still carried; refraction that disperses ends all but the hero.
     #[inline(always)]
@@ -360,7 +202,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let spreads = disperses.bits();
         let front = surface.front.bits();
         let cosines = array(l, incidence.cosine);
-        let at = self.table_rows(l, surface.spectrum);
+        let at = self.table_rows(l, surface.spectra[0]);
         let variates = self
             .model
             .sequence

@@ -1,9 +1,10 @@
 //! What a packet of hits looks like: geometry, appearance, emission.
 
 use super::intersect::{Leaving, NOTHING, Nearest};
-use super::model::{Model, Scatter};
-use super::parts::{Entry, NO_LIGHT, SmallTable, word};
+use super::model::Model;
+use super::parts::{Entry, Look, NO_LIGHT, SmallTable, word};
 use super::pool::has;
+use crate::material::{MaterialKind, SPECTRA};
 use crate::math::lanes::{Int, Lanes, Mask, Real, inlined};
 use crate::math::vec3::Vec3;
 use crate::sample::mis::power_weight;
@@ -21,13 +22,11 @@ pub struct Surfaces<L: Lanes> {
     pub normal: Vec3<L::Real>,
     /// The ray meets the outward side.
     pub front: L::Mask,
-    /// [`Scatter`] as a number.
-    pub scatter: L::Int,
-    /// Spectrum of albedo, reflectance or n.
-    pub spectrum: L::Int,
-    /// Spectrum of the extinction coefficient.
-    pub extinction: L::Int,
-    /// The glass disperses.
+    /// [`MaterialKind`] as a number.
+    pub kind: L::Int,
+    /// Where the material's spectra stand in the bank.
+    pub spectra: [L::Int; SPECTRA],
+    /// Refraction disperses.
     pub disperses: L::Mask,
     /// The side that is met emits.
     pub emits: L::Mask,
@@ -44,19 +43,6 @@ pub struct Arrival<L: Lanes> {
     pub pdf: L::Real,
     /// Light sampling could not have found it.
     pub specular: L::Mask,
-}
-
-/// What the hits' parts say, before the lanes' own points come in.
-struct Gathered<L: Lanes> {
-    vector: Vec3<L::Real>,
-    level: L::Real,
-    half: L::Real,
-    object: L::Int,
-    word: L::Int,
-    spectrum: L::Int,
-    extinction: L::Int,
-    emission: L::Int,
-    light: L::Int,
 }
 
 /// Gathers what the loop needs to know about each hit.
@@ -90,8 +76,9 @@ pub fn surfaces<L: Lanes>(
                     }
                 },
             );
+            let [x, y, z] = gathered.vector;
             let outline = Outline {
-                vector: gathered.vector,
+                vector: Vec3::new(x, y, z),
                 level: gathered.level,
                 half: gathered.half,
                 faces: has(word::FACES),
@@ -103,13 +90,12 @@ pub fn surfaces<L: Lanes>(
                 normal,
                 object: l.select_int(hit, gathered.object, l.int(NOTHING)),
                 front: nobody,
-                scatter: l.select_int(
+                kind: l.select_int(
                     hit,
-                    gathered.word & l.int(word::SCATTER),
-                    l.int(Scatter::Black as u32),
+                    gathered.word & l.int(word::KIND),
+                    l.int(MaterialKind::Black as u32),
                 ),
-                spectrum: gathered.spectrum,
-                extinction: gathered.extinction,
+                spectra: gathered.spectra,
                 disperses: has(word::DISPERSES),
                 emits: nobody,
                 emission: gathered.emission,
@@ -124,7 +110,7 @@ pub fn surfaces<L: Lanes>(
             }
             out.front = hit & front;
             out.emits = (has(word::EMITS_FRONT) & front) | (has(word::EMITS_BACK) & !front);
-            checkers(l, model, has(word::CHECKER), &mut out);
+            textures(l, model, has(word::TEXTURED), &mut out);
             let weighted = out.emits & !arrival.specular & !gathered.light.same(l.int(NO_LIGHT));
             for_each_distinct(
                 l,
@@ -164,35 +150,28 @@ fn looked_up<L: Lanes>(
     part: L::Int,
     words: u32,
     hit: L::Mask,
-) -> Gathered<L> {
-    let zero = l.int(0);
+) -> Look<L::Real, L::Int> {
     // Lanes that have hit nothing read some entry, and what it says is not used.
-    let part = l.select_int(hit, part, zero);
-    let [x, y, z] = &table.vector;
-    let emits = words & (word::EMITS_FRONT | word::EMITS_BACK) != 0;
-    Gathered {
-        vector: Vec3::new(l.lookup(x, part), l.lookup(y, part), l.lookup(z, part)),
-        level: l.lookup(&table.level, part),
-        half: if words & word::FACES == 0 {
-            l.real(0.0)
-        } else {
-            l.lookup(&table.half, part)
+    let part = l.select_int(hit, part, l.int(0));
+    table.zip(
+        &Look::wanted(words),
+        #[inline(always)]
+        |column, wanted| {
+            if *wanted {
+                l.lookup(column, part)
+            } else {
+                l.real(0.0)
+            }
         },
-        object: l.lookup_int(&table.object, part),
-        word: l.lookup_int(&table.word, part),
-        spectrum: l.lookup_int(&table.spectrum, part),
-        extinction: l.lookup_int(&table.extinction, part),
-        emission: if emits {
-            l.lookup_int(&table.emission, part)
-        } else {
-            zero
+        #[inline(always)]
+        |column, wanted| {
+            if *wanted {
+                l.lookup_int(column, part)
+            } else {
+                l.int(0)
+            }
         },
-        light: if emits {
-            l.lookup_int(&table.light, part)
-        } else {
-            l.int(NO_LIGHT)
-        },
-    }
+    )
 }
 
 /// One distinct part at a time.
@@ -202,16 +181,15 @@ fn one_by_one<L: Lanes>(
     entries: &[Entry<L::Scalar>],
     part: L::Int,
     hit: L::Mask,
-) -> Gathered<L> {
+) -> Look<L::Real, L::Int> {
     let (nothing, none) = (l.real(0.0), l.int(0));
-    let mut out = Gathered::<L> {
-        vector: Vec3::new(nothing, nothing, l.real(1.0)),
+    let mut out = Look {
+        vector: [nothing, nothing, l.real(1.0)],
         level: nothing,
         half: nothing,
         object: none,
         word: none,
-        spectrum: none,
-        extinction: none,
+        spectra: [none; SPECTRA],
         emission: none,
         light: l.int(NO_LIGHT),
     };
@@ -221,22 +199,13 @@ fn one_by_one<L: Lanes>(
         hit,
         #[inline(always)]
         |k, here| {
-            let entry = &entries[k as usize];
-            let [x, y, z] = entry.part.vector;
-            let vector = Vec3::new(l.splat(x), l.splat(y), l.splat(z));
-            out.vector = Vec3::select(l, here, vector, out.vector);
-            out.level = l.select(here, l.splat(entry.part.level), out.level);
-            out.half = l.select(here, l.splat(entry.part.half), out.half);
-            for (value, own) in [
-                (&mut out.object, entry.object),
-                (&mut out.word, entry.word),
-                (&mut out.spectrum, entry.spectrum),
-                (&mut out.extinction, entry.extinction),
-                (&mut out.emission, entry.emission),
-                (&mut out.light, entry.light),
-            ] {
-                *value = l.select_int(here, l.int(own), *value);
-            }
+            out = entries[k as usize].zip(
+                &out,
+                #[inline(always)]
+                |own, other| l.select(here, l.splat(*own), *other),
+                #[inline(always)]
+                |own, other| l.select_int(here, l.int(*own), *other),
+            );
         },
     );
     out
@@ -274,28 +243,25 @@ fn others<L: Lanes>(
     );
 }
 
-/// Chooses between the two spectra of checkerboards.
+/// Lets textures choose the spectra.
 #[inline(always)]
-fn checkers<L: Lanes>(l: L, model: &Model<L::Scalar>, checkered: L::Mask, out: &mut Surfaces<L>) {
+fn textures<L: Lanes>(l: L, model: &Model<L::Scalar>, textured: L::Mask, out: &mut Surfaces<L>) {
     let (objects, point) = (out.object, out.point);
     for_each_distinct(
         l,
         objects,
-        checkered,
+        textured,
         #[inline(always)]
         |k, here| {
-            let Some(checker) = &model.shading[k as usize].checker else {
-                return;
-            };
+            let [fx, fy, fz] = model.appearances[k as usize].surface.numbers;
             let cell = inlined(
                 #[inline(always)]
                 |x: L::Real, frequency| (x * l.splat(frequency)).floor(),
             );
-            let [fx, fy, fz] = checker.frequency;
             let local = model.shapes[k as usize].local(l, point);
             let half = (cell(local.x, fx) + cell(local.y, fy) + cell(local.z, fz)) * l.real(0.5);
             let odd = here & !half.same(half.floor());
-            out.spectrum = l.select_int(odd, l.int(checker.odd), out.spectrum);
+            out.spectra[0] = l.select_int(odd, out.spectra[1], out.spectra[0]);
         },
     );
 }
