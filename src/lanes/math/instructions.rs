@@ -14,7 +14,8 @@ pub trait Job<T: Scalar>: Sized {
     type Output;
     /// Does it; to be inlined into the caller, which is compiled for the instruction set.
     fn run<L: Lanes<Scalar = T>>(self, lanes: L) -> Self::Output;
-    /// The same where there are registers for two packets ([`super::twice`]).
+    /// The same where there are registers for two packets ([`super::twice`]): 32, each as wide as
+    /// one.
     #[inline(always)]
     fn run_amid_registers<L: Lanes<Scalar = T>>(self, lanes: L) -> Self::Output {
         self.run(lanes)
@@ -123,7 +124,6 @@ impl Instructions {
             Level::Avx2(simd) => Self::Avx2(simd),
             #[cfg(target_arch = "aarch64")]
             Level::Neon(simd) => Self::Neon(simd),
-            #[cfg(not(target_arch = "aarch64"))]
             _ => Self::Scalar,
         }
     }
@@ -148,14 +148,23 @@ impl Instructions {
 
     /// Does a job in lanes of T.
     pub fn run<T: Scalar, J: Job<T>>(self, job: J) -> J::Output {
+        macro_rules! on {
+            ($lanes:expr, $run:ident) => {
+                on(
+                    $lanes,
+                    #[inline(always)]
+                    |lanes| job.$run(lanes),
+                )
+            };
+        }
         match self {
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512(simd) => amid_registers(T::packet(simd), job),
+            Self::Avx512(simd) => on!(T::packet(simd), run_amid_registers),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2(simd) => on(T::packet(simd), job),
+            Self::Avx2(simd) => on!(T::packet(simd), run),
             #[cfg(target_arch = "aarch64")]
-            Self::Neon(simd) => on(T::packet(simd), job),
-            Self::Scalar => on(T::ONE, job),
+            Self::Neon(simd) => on!(T::packet(simd), run),
+            Self::Scalar => on!(T::ONE, run),
         }
     }
 
@@ -173,18 +182,9 @@ impl Instructions {
 
 /// The boundary at which code for an instruction set begins.
 #[inline(never)]
-fn on<L: Lanes, J: Job<L::Scalar>>(lanes: L, job: J) -> J::Output {
+fn on<L: Lanes, R>(lanes: L, work: impl FnOnce(L) -> R) -> R {
     lanes.vectorize(
         #[inline(always)]
-        || job.run(lanes),
-    )
-}
-
-/// The same for one with registers for two packets: 32 of them, each as wide as a packet.
-#[inline(never)]
-fn amid_registers<L: Lanes, J: Job<L::Scalar>>(lanes: L, job: J) -> J::Output {
-    lanes.vectorize(
-        #[inline(always)]
-        || job.run_amid_registers(lanes),
+        || work(lanes),
     )
 }

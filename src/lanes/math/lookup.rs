@@ -2,7 +2,7 @@
 //! lane.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, f32x16, f64x8, u32x16, u64x8};
+use fearless_simd::{f32x16, f64x8, u32x16, u64x8};
 
 /// Entries of a small table.
 pub const SMALL: usize = 16;
@@ -76,9 +76,11 @@ pub fn single<S: Simd>(simd: S, table: u32x16<S>, index: u32x16<S>) -> u32x16<S>
     let (table, index): ([f32; 16], [u32; 16]) = (table.into(), index.into());
     let found: f32x16<S> = match simd.level() {
         #[cfg(target_arch = "x86_64")]
-        Level::Avx512(token) => x86::single_avx512(token, table, index).simd_into(simd),
+        fearless_simd::Level::Avx512(token) => {
+            x86::single_avx512(token, table, index).simd_into(simd)
+        }
         #[cfg(target_arch = "x86_64")]
-        Level::Avx2(token) => x86::single_avx2(token, table, index).simd_into(simd),
+        fearless_simd::Level::Avx2(token) => x86::single_avx2(token, table, index).simd_into(simd),
         _ => {
             let mut out = [0.0; 16];
             for (out, i) in out.iter_mut().zip(index) {
@@ -96,7 +98,7 @@ pub fn double<S: Simd>(simd: S, table: &[f64; SMALL], index: u64x8<S>) -> f64x8<
     let index: [u64; 8] = index.into();
     let found = match simd.level() {
         #[cfg(target_arch = "x86_64")]
-        Level::Avx512(token) => x86::double_avx512(token, *table, index),
+        fearless_simd::Level::Avx512(token) => x86::double_avx512(token, *table, index),
         _ => {
             let mut out = [0.0; 8];
             for (out, i) in out.iter_mut().zip(index) {
