@@ -12,6 +12,8 @@ pub mod integrate;
 pub mod light;
 pub mod material;
 pub mod math;
+#[cfg(feature = "planted")]
+pub mod planted;
 pub mod root;
 pub mod sample;
 pub mod shape;

@@ -8,6 +8,7 @@ use super::{Plan, Tables};
 use crate::film::pixels::Pixels;
 use crate::integrate::model::{Model, Needs};
 use crate::light::LightShape;
+use crate::material::MaterialKind;
 use crate::math::lanes::Scalar;
 use crate::sample::replicates::Replicates;
 use crate::scene::{Object, Scene, Shape, Surface};
@@ -204,16 +205,17 @@ fn listed(names: &[String]) -> String {
 
 /// The branches of the loop, in words.
 fn branches(needs: Needs) -> [(&'static str, bool); 9] {
+    let has = |kind| needs.materials.contains(kind);
     [
-        ("diffuse reflection", needs.diffuse),
-        ("metals", needs.conductor),
-        ("ideal mirrors", needs.ideal_mirror),
-        ("glass", needs.glass),
+        ("diffuse reflection", has(MaterialKind::Diffuse)),
+        ("metals", has(MaterialKind::Conductor)),
+        ("ideal mirrors", has(MaterialKind::Mirror)),
+        ("glass", has(MaterialKind::Glass)),
         ("dispersion", needs.dispersion),
         ("emitting surfaces", needs.emission),
         ("lens", needs.lens),
         ("implicit surfaces", needs.implicit),
-        ("checkerboards", needs.checker),
+        ("checkerboards", has(MaterialKind::Checkerboard)),
     ]
 }
 

@@ -25,6 +25,7 @@ use std::path::Path;
 use glam::DVec3;
 
 pub use crate::camera::{Camera, Lens, Projection};
+use crate::material::MaterialKind;
 use crate::math::affine::Affine;
 pub use crate::sample::SamplerKind;
 pub use crate::shape::Shape;
@@ -187,6 +188,20 @@ pub enum Surface {
         /// Edge of a cell in object coordinates (canonical coordinates × [`Object::size`]).
         cell: f64,
     },
+}
+
+impl Surface {
+    /// Its kind.
+    pub fn kind(&self) -> MaterialKind {
+        match self {
+            Self::Black => MaterialKind::Black,
+            Self::Diffuse(_) => MaterialKind::Diffuse,
+            Self::Conductor(_) => MaterialKind::Conductor,
+            Self::IdealMirror(_) => MaterialKind::Mirror,
+            Self::Glass(_) => MaterialKind::Glass,
+            Self::Checkerboard { .. } => MaterialKind::Checkerboard,
+        }
+    }
 }
 
 /// Emitted radiance and the sides it leaves from.

@@ -8,12 +8,12 @@
 use etalon::camera::LaneCamera;
 use etalon::integrate::model::{Appearance, Model};
 use etalon::integrate::parts::Parts;
-#[cfg(feature = "planted")]
-use etalon::integrate::planted::Planted;
 use etalon::light::{LightShape, SmallLights};
 use etalon::material::{MaterialKind, fresnel};
 use etalon::math::lanes::Scalar;
 use etalon::plan::{Plan, Tables};
+#[cfg(feature = "planted")]
+use etalon::planted::Planted;
 use etalon::scene::{Scene, Surface};
 use etalon::spectrum::grid::{CELLS, LONGEST, SHORTEST, WavelengthGrid};
 
@@ -107,7 +107,7 @@ fn planted<T: Scalar>(mistake: Mistake, scene: &Scene, model: &mut Model<T>) -> 
             model.planted = Some(mistake);
             match mistake {
                 Planted::Cosine => !model.lights.is_empty(),
-                Planted::Polarisation => model.needs.conductor,
+                Planted::Polarisation => model.needs.materials.contains(MaterialKind::Conductor),
             }
         }
     }
@@ -201,7 +201,7 @@ fn polarisation<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
         found = true;
     }
     if found {
-        model.needs.ideal_mirror = true;
+        model.needs.materials = [MaterialKind::Mirror].into_iter().collect();
         refresh(model);
     }
     found
