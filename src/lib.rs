@@ -15,5 +15,5 @@ pub mod study;
 #[cfg(feature = "planted")]
 pub use etalon_lanes::planted;
 pub use etalon_lanes::{
-    camera, field, integrate, light, material, math, root, sample, shape, spectrum,
+    camera, declare, field, integrate, light, material, math, root, sample, shape, spectrum,
 };

@@ -7,6 +7,7 @@
 //! is the one to use.
 
 pub mod camera;
+pub mod declare;
 pub mod field;
 pub mod integrate;
 pub mod light;

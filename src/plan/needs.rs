@@ -2,7 +2,7 @@
 
 use crate::integrate::model::Needs;
 use crate::material::MaterialKind;
-use crate::scene::{Light, Material, Scene, Shape, Surface};
+use crate::scene::{Light, Material, Scene, Shape};
 use crate::spectrum::Spectrum;
 
 /// Materials that some object wears.
@@ -15,14 +15,13 @@ fn worn(scene: &Scene) -> impl Iterator<Item = &Material> {
 
 /// Reads the needs off the objects that exist; what is only defined needs nothing.
 pub fn needs(scene: &Scene) -> Needs {
-    let kinds = worn(scene).map(|material| material.surface.kind());
+    let kinds = worn(scene).map(|material| material.surface.kind);
     Needs {
         materials: kinds
             .flat_map(|kind| [Some(kind), kind.texture_of()])
             .flatten()
             .collect(),
-        dispersion: worn(scene)
-            .any(|m| matches!(&m.surface, Surface::Glass(ior) if ior.disperses())),
+        dispersion: worn(scene).any(|m| m.surface.disperses()),
         emission: worn(scene).any(|m| m.emission.is_some()),
         lens: scene.camera.lens.is_some(),
         implicit: scene
@@ -34,11 +33,7 @@ pub fn needs(scene: &Scene) -> Needs {
 
 /// The spectra that light takes on its way, other than refractive indices.
 pub fn spectra(scene: &Scene) -> impl Iterator<Item = &Spectrum> {
-    let surfaces = worn(scene).flat_map(|material| match &material.surface {
-        Surface::Diffuse(albedo) | Surface::IdealMirror(albedo) => std::slice::from_ref(albedo),
-        Surface::Checkerboard { albedo, .. } => albedo.as_slice(),
-        Surface::Black | Surface::Conductor(_) | Surface::Glass(_) => &[],
-    });
+    let surfaces = worn(scene).flat_map(|material| material.surface.spectra());
     let emissions = worn(scene).filter_map(|material| material.emission.as_ref());
     let lights = scene.lights.iter().map(|light| match light {
         Light::Point { intensity, .. } => intensity,
@@ -64,7 +59,7 @@ pub fn everything() -> Needs {
 /// Light that paths from the camera can never find: point or directional light that reaches a
 /// surface, or the camera, by way of a mirror or through glass.
 pub fn left_out(scene: &Scene) -> Vec<String> {
-    let specular = worn(scene).any(|material| material.surface.kind().is_delta());
+    let specular = worn(scene).any(|material| material.surface.kind.is_delta());
     if !specular {
         return Vec::new();
     }

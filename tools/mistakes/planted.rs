@@ -6,6 +6,7 @@
 //! both are also planted in the loop itself, where scenes may have all directions.
 
 use etalon::camera::LaneCamera;
+use etalon::declare::Value;
 use etalon::integrate::model::{Appearance, Model};
 use etalon::integrate::parts::Parts;
 use etalon::light::{LightShape, SmallLights};
@@ -14,7 +15,7 @@ use etalon::math::lanes::Scalar;
 use etalon::plan::{Plan, Tables};
 #[cfg(feature = "planted")]
 use etalon::planted::Planted;
-use etalon::scene::{Scene, Surface};
+use etalon::scene::Scene;
 use etalon::spectrum::grid::{CELLS, LONGEST, SHORTEST, WavelengthGrid};
 
 /// What can be wrong.
@@ -184,9 +185,12 @@ fn polarisation<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
     }
     for object in 0..model.appearances.len() {
         let material = &scene.materials[model.appearances[object].material as usize].value;
-        let Surface::Conductor(index) = &material.surface else {
+        let [Value::Index(index)] = material.surface.values.as_slice() else {
             continue;
         };
+        if material.surface.kind != MaterialKind::Conductor {
+            continue;
+        }
         let values: Vec<f64> = middles()
             .into_iter()
             .map(|nm| {

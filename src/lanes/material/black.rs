@@ -2,11 +2,15 @@
 
 use super::{Event, Interface, Lanes, Material, MaterialKind, Transport, Variates, Vec3};
 
+use crate::declare::{Declaration, Quantity};
+
 /// Nothing is reflected.
 pub struct Black;
 
 impl Material for Black {
     const KIND: MaterialKind = MaterialKind::Black;
+    const DECLARATION: Declaration = Declaration::new("black", "no reflection", Quantity::True);
+    const WORDS: &'static str = "black";
 
     #[inline(always)]
     fn sample<L: Lanes, const C: usize>(

@@ -7,6 +7,7 @@ use super::{
     Densities, Event, Interface, Lanes, Material, MaterialKind, NUMBERS, SPECTRA, Transport,
     Variates, Vec3,
 };
+use crate::declare::{Declaration, Parameter, Quantity, Range, Role};
 use crate::math::lanes::{Real, inlined};
 
 /// [`Diffuse`], of the first albedo in cells whose numbers sum to an even one, else of the second.
@@ -14,12 +15,33 @@ pub struct Checkerboard;
 
 impl Material for Checkerboard {
     const KIND: MaterialKind = MaterialKind::Checkerboard;
+    const DECLARATION: Declaration = Declaration {
+        beside: &[Parameter {
+            key: "cell",
+            what: "edge of a cell",
+            quantity: Quantity::Number {
+                unit: "object coordinates",
+                range: Range::POSITIVE,
+            },
+            default: None,
+        }],
+        ..Declaration::new(
+            "checkerboard",
+            "albedos",
+            Quantity::TwoSpectra(Role::Reflectance),
+        )
+    };
+    const WORDS: &'static str = "checkerboard";
+    const BRANCH: Option<&'static str> = Some("checkerboards");
     const TEXTURE_OF: Option<MaterialKind> = Some(MaterialKind::Diffuse);
     const SPREAD: bool = true;
 
     /// Cells per canonical unit along each axis.
     fn numbers(numbers: &[f64], size: DVec3) -> [f64; NUMBERS] {
-        size.to_array().map(|length| length / numbers[0])
+        let [cell, ..] = numbers else {
+            return [0.0; NUMBERS];
+        };
+        size.to_array().map(|length| length / cell)
     }
 
     #[inline(always)]

@@ -2,6 +2,7 @@
 
 use super::interface::unit_again;
 use super::{Event, Interface, Lanes, Material, MaterialKind, Transport, Variates, Vec3};
+use crate::declare::{Declaration, Quantity};
 use crate::math::lanes::Mask;
 use crate::math::packet::{array, each};
 
@@ -10,6 +11,9 @@ pub struct Conductor;
 
 impl Material for Conductor {
     const KIND: MaterialKind = MaterialKind::Conductor;
+    const DECLARATION: Declaration = Declaration::new("mirror", "metal", Quantity::Metal);
+    const WORDS: &'static str = "metal";
+    const BRANCH: Option<&'static str> = Some("metals");
     const DELTA: bool = true;
 
     #[inline(always)]

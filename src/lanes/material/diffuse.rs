@@ -6,6 +6,7 @@ use std::f64::consts::FRAC_1_PI;
 use super::{
     Densities, Event, Interface, Lanes, Material, MaterialKind, Transport, Variates, Vec3,
 };
+use crate::declare::{Declaration, Quantity, Role};
 use crate::math::lanes::{Mask, Real, Scalar};
 use crate::math::packet::each;
 use crate::sample::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
@@ -15,6 +16,10 @@ pub struct Diffuse;
 
 impl Material for Diffuse {
     const KIND: MaterialKind = MaterialKind::Diffuse;
+    const DECLARATION: Declaration =
+        Declaration::new("diffuse", "albedo", Quantity::Spectrum(Role::Reflectance));
+    const WORDS: &'static str = "diffuse";
+    const BRANCH: Option<&'static str> = Some("diffuse reflection");
     const SPREAD: bool = true;
     const LAMBERTIAN: bool = true;
 

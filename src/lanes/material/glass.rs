@@ -2,6 +2,7 @@
 
 use super::interface::unit_again;
 use super::{Event, Interface, Lanes, Material, MaterialKind, Transport, Variates, Vec3, fresnel};
+use crate::declare::{Declaration, Quantity};
 use crate::math::lanes::{Mask, Real, Scalar, WIDEST};
 use crate::math::packet::{array, each};
 
@@ -11,6 +12,9 @@ pub struct Glass;
 
 impl Material for Glass {
     const KIND: MaterialKind = MaterialKind::Glass;
+    const DECLARATION: Declaration = Declaration::new("glass", "index inside", Quantity::Glass);
+    const WORDS: &'static str = "glass";
+    const BRANCH: Option<&'static str> = Some("glass");
     const DELTA: bool = true;
     const REFRACTS: bool = true;
     const CHOOSES: bool = true;

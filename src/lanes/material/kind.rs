@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::{Densities, Event, Interface, Lanes, NUMBERS, SPECTRA, Transport, Variates, Vec3};
+use crate::declare::Declaration;
 
 /// How a surface scatters light.
 ///
@@ -11,6 +12,12 @@ use super::{Densities, Event, Interface, Lanes, NUMBERS, SPECTRA, Transport, Var
 pub trait Material {
     /// Its place in the list.
     const KIND: MaterialKind;
+    /// Its keys in scene files; the values come in their order.
+    const DECLARATION: Declaration;
+    /// What `info` calls an object of it.
+    const WORDS: &'static str;
+    /// What `info` calls its branch of the loop, where it has one.
+    const BRANCH: Option<&'static str> = None;
     /// The material whose spectra it chooses by the place, and that scatters in its stead.
     const TEXTURE_OF: Option<MaterialKind> = None;
     /// It has a delta part: directions that light sampling cannot find.
@@ -92,7 +99,17 @@ macro_rules! materials {
         impl MaterialKind {
             /// All of them, in the order in which messages list them.
             pub const ALL: &'static [Self] = &[$(Self::$kind,)*];
+
+            /// Their keys in scene files; some have one in common.
+            pub const KEYS: &'static [&'static str] =
+                &[$(<super::$module::$kind as Material>::DECLARATION.main.key,)*];
         }
+
+        $(
+            const _: () = assert!(
+                <super::$module::$kind as Material>::DECLARATION.spectra() <= SPECTRA
+            );
+        )*
 
         /// Evaluates an item of a kind's type.
         macro_rules! of {
@@ -137,6 +154,21 @@ materials! {
 }
 
 impl MaterialKind {
+    /// [`Material::DECLARATION`].
+    pub fn declaration(self) -> Declaration {
+        of!(self, DECLARATION)
+    }
+
+    /// [`Material::WORDS`].
+    pub fn words(self) -> &'static str {
+        of!(self, WORDS)
+    }
+
+    /// [`Material::BRANCH`].
+    pub fn branch(self) -> Option<&'static str> {
+        of!(self, BRANCH)
+    }
+
     /// [`Material::TEXTURE_OF`].
     #[inline(always)]
     pub fn texture_of(self) -> Option<Self> {

@@ -3,6 +3,7 @@
 
 use super::interface::unit_again;
 use super::{Event, Interface, Lanes, Material, MaterialKind, Transport, Variates, Vec3};
+use crate::declare::{Declaration, Quantity, Role};
 use crate::math::lanes::Mask;
 use crate::math::packet::each;
 
@@ -11,6 +12,16 @@ pub struct Mirror;
 
 impl Material for Mirror {
     const KIND: MaterialKind = MaterialKind::Mirror;
+    const DECLARATION: Declaration = Declaration {
+        within: Some("ideal"),
+        ..Declaration::new(
+            "mirror",
+            "reflectance",
+            Quantity::Spectrum(Role::Reflectance),
+        )
+    };
+    const WORDS: &'static str = "ideal mirror";
+    const BRANCH: Option<&'static str> = Some("ideal mirrors");
     const DELTA: bool = true;
 
     #[inline(always)]

@@ -17,7 +17,7 @@ pub mod record;
 
 pub use interface::{Densities, Event, Interface, Medium, Transport, Variates, Wavelengths};
 pub use kind::{Material, MaterialKind, MaterialKinds};
-pub use record::{NUMBERS, Record, SPECTRA};
+pub use record::{NUMBERS, Record, SPECTRA, Surface};
 
 pub(crate) use kind::each_material;
 
