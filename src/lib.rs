@@ -12,6 +12,8 @@ pub mod stats;
 #[cfg(feature = "study")]
 pub mod study;
 
+#[cfg(feature = "planted")]
+pub use etalon_lanes::planted;
 pub use etalon_lanes::{
-    camera, field, integrate, light, material, math, root, sample, shape, spectrum,
+    camera, declare, field, integrate, light, material, math, root, sample, shape, spectrum,
 };

@@ -13,9 +13,10 @@
 use std::path::Path;
 
 use etalon::integrate::bounce::{Places, bounce};
-use etalon::integrate::intersect::{NOTHING, Rungs};
+use etalon::integrate::chunk::Workspace;
+use etalon::integrate::intersect::NOTHING;
 use etalon::integrate::model::Model;
-use etalon::integrate::pool::{IntField, Pool, RealField, Rows, flags};
+use etalon::integrate::pool::{IntField, RealField, flags};
 use etalon::math::affine::Affine;
 use etalon::math::lanes::{Lanes, Scalar};
 use etalon::plan::choose::Precision;
@@ -101,8 +102,8 @@ fn by_the_loop(plan: &Plan, chain: &Chain) -> Vec<f64> {
 
 #[inline(never)]
 fn follow<L: Lanes>(l: L, model: &Model<L::Scalar>, chain: &Chain) -> Vec<f64> {
-    let mut pool = Pool::<L::Scalar>::new(L::COUNT);
-    let mut rows = Rows::<L::Scalar, WAVELENGTHS>::new(1);
+    let mut workspace = Workspace::<L::Scalar, WAVELENGTHS>::new();
+    let pool = &mut workspace.pool;
     for (field, v) in [
         (RealField::Origin, chain.ray.origin),
         (RealField::Direction, chain.ray.direction),
@@ -113,34 +114,22 @@ fn follow<L: Lanes>(l: L, model: &Model<L::Scalar>, chain: &Chain) -> Vec<f64> {
     }
     pool.set_int(l, IntField::Departure, 0, l.int(NOTHING));
     pool.set_int(l, IntField::Flags, 0, l.int(flags::SPECULAR));
-    let (mut beyond, mut rungs) = (Vec::new(), Rungs::default());
-    let mut vertices = Some(Vec::new());
+    workspace.trace = Some(Vec::new());
     for _ in &chain.each {
-        pool.length = 1;
+        workspace.pool.length = 1;
         // Roulette is for later segments only.
-        pool.set_int(l, IntField::Depth, 0, l.int(0));
+        workspace.pool.set_int(l, IntField::Depth, 0, l.int(0));
         let places = Places { at: 0, to: 0 };
         let went_on = l.vectorize(
             #[inline(always)]
-            || {
-                let beyond = &mut beyond;
-                bounce(
-                    l,
-                    model,
-                    &mut pool,
-                    &mut rows,
-                    beyond,
-                    places,
-                    &mut rungs,
-                    &mut vertices,
-                )
-            },
+            || bounce(l, model, &mut workspace, places),
         );
         if went_on == 0 {
             break;
         }
     }
-    vertices.unwrap().iter().map(|v| v.distance).collect()
+    let vertices = workspace.trace.unwrap();
+    vertices.iter().map(|v| v.distance).collect()
 }
 
 /// Path lengths by certified hits whose points and normals are rounded to f64, as `trace` prints

@@ -6,6 +6,8 @@
 
 use std::path::Path;
 
+use etalon::declare::Value;
+use etalon::material::MaterialKind;
 use etalon::math::affine::Affine;
 use etalon::scene::{
     self, Diagnostic, Light, Origin, Overrides, Projection, Scene, SceneError, Shape, Sides,
@@ -364,15 +366,15 @@ fn a_good_file_is_read_as_written() {
     assert_eq!(names[0], "white");
     assert_eq!(names.len(), 8);
     let lamp = &scene.materials[6].value;
-    assert_eq!(lamp.surface, Surface::Black);
+    assert_eq!(lamp.surface.kind, MaterialKind::Black);
     assert_eq!(lamp.emission.as_ref().unwrap().sides, Sides::Both);
     assert_eq!(
         scene.materials[2].value.surface,
-        Surface::Conductor(named_metal("Ag").unwrap())
+        conductor(named_metal("Ag").unwrap())
     );
     assert_eq!(
         scene.materials[4].value.surface,
-        Surface::Conductor(RefractiveIndex::Complex {
+        conductor(RefractiveIndex::Complex {
             n: Spectrum::Constant(0.2),
             k: Spectrum::Constant(3.0)
         })
@@ -384,6 +386,13 @@ fn a_good_file_is_read_as_written() {
     assert!(matches!(scene.lights[0], Light::Point { at, .. } if at == DVec3::new(0.0, 5.0, 0.0)));
     assert_eq!(scene.source.text, GOOD);
     assert_eq!(scene.panel, None);
+}
+
+fn conductor(index: RefractiveIndex) -> Surface {
+    Surface {
+        kind: MaterialKind::Conductor,
+        values: vec![Value::Index(index)],
+    }
 }
 
 #[test]
@@ -399,7 +408,7 @@ fn panels_are_laid_over_the_file() {
     assert!(b.camera.lens.is_some());
     assert_eq!(
         b.materials[0].value.surface,
-        Surface::Conductor(named_metal("Al").unwrap())
+        conductor(named_metal("Al").unwrap())
     );
     let wrong = diagnostic(parse_with(GOOD, Some("B1"), &[]), "panel");
     assert_eq!(wrong.message, r#"there is no panel "B1""#);
@@ -432,7 +441,10 @@ fn set_lays_values_over_the_file_and_the_panel() {
     assert_eq!(scene.environment, Some(Spectrum::Constant(0.25)));
     assert_eq!(
         scene.materials[0].value.surface,
-        Surface::IdealMirror(Spectrum::Constant(0.5))
+        Surface {
+            kind: MaterialKind::Mirror,
+            values: vec![Value::Spectrum(Spectrum::Constant(0.5))],
+        }
     );
     let no_lens = parse_with(GOOD, None, &[("camera.lens.radius", "0")]).unwrap();
     assert_eq!(no_lens.camera.lens, None);
@@ -646,8 +658,8 @@ fn data_files_are_found_beside_the_scene() {
     let load = || scene::load(&scene_path, &Overrides::default());
 
     csv("# source\nnm,value\n400,0.25\n700,0.5\n");
-    let Surface::Diffuse(Spectrum::Table(table)) = &load().unwrap().materials[1].value.surface
-    else {
+    let painted = load().unwrap().materials[1].value.surface.clone();
+    let [Value::Spectrum(Spectrum::Table(table))] = painted.values.as_slice() else {
         panic!("not a table");
     };
     assert_eq!(table.values, [0.25, 0.5]);

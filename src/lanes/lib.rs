@@ -7,11 +7,14 @@
 //! is the one to use.
 
 pub mod camera;
+pub mod declare;
 pub mod field;
 pub mod integrate;
 pub mod light;
 pub mod material;
 pub mod math;
+#[cfg(feature = "planted")]
+pub mod planted;
 pub mod root;
 pub mod sample;
 pub mod shape;

@@ -7,12 +7,13 @@ use super::choose::Choices;
 use super::extent::about_camera;
 use super::occluders::occluders;
 use crate::camera::LaneCamera;
+use crate::declare::Value;
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::list::List;
 use crate::integrate::model::{Appearance, Many, Model};
 use crate::integrate::parts::Parts;
 use crate::light::{self, LaneLight, LightShape, SmallLights};
-use crate::material::{MaterialKind, Record};
+use crate::material::Record;
 use crate::math::affine::Affine;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Sequence;
@@ -212,7 +213,7 @@ impl<'a, T: Scalar> Builder<'a, T> {
             }
             Shape::Canonical(_) => {
                 let surface = &scene.materials[object.material].value.surface;
-                let priority = u8::from(matches!(surface, Surface::Glass(_)));
+                let priority = u8::from(surface.kind.refracts());
                 self.resolver.push(index as u32, placed, priority);
             }
         }
@@ -228,40 +229,11 @@ impl<'a, T: Scalar> Builder<'a, T> {
 
     /// A surface as the loop reads it.
     fn record(&mut self, object: &Object, surface: &Surface) -> Record<T> {
-        let mut record = Record {
-            kind: MaterialKind::Black,
-            texture: None,
-            spectra: [0; 2],
-            numbers: [T::default(); 3],
-            disperses: false,
-        };
-        match surface {
-            Surface::Black => {}
-            Surface::Diffuse(albedo) => {
-                record.kind = MaterialKind::Diffuse;
-                record.spectra[0] = self.spectrum(albedo);
-            }
-            Surface::Conductor(index) => {
-                record.kind = MaterialKind::Conductor;
-                record.spectra = self.refractive_index(index);
-            }
-            Surface::IdealMirror(reflectance) => {
-                record.kind = MaterialKind::Mirror;
-                record.spectra[0] = self.spectrum(reflectance);
-            }
-            Surface::Glass(index) => {
-                record.kind = MaterialKind::Glass;
-                record.spectra = self.refractive_index(index);
-                record.disperses = index.disperses();
-            }
-            Surface::Checkerboard { albedo, cell } => {
-                record.kind = MaterialKind::Diffuse;
-                record.texture = Some(MaterialKind::Checkerboard);
-                record.spectra = [self.spectrum(&albedo[0]), self.spectrum(&albedo[1])];
-                record.numbers = object.size.to_array().map(|s| T::from_f64(s / cell));
-            }
-        }
-        record
+        surface.record(object.size, |value| match value {
+            Value::Number(_) => Vec::new(),
+            Value::Spectrum(spectrum) => vec![self.spectrum(spectrum)],
+            Value::Index(index) => self.refractive_index(index).into(),
+        })
     }
 
     /// Gives object `index` its appearance, and makes a light of it if it can be sampled.

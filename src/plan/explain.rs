@@ -8,9 +8,10 @@ use super::{Plan, Tables};
 use crate::film::pixels::Pixels;
 use crate::integrate::model::{Model, Needs};
 use crate::light::LightShape;
+use crate::material::MaterialKind;
 use crate::math::lanes::Scalar;
 use crate::sample::replicates::Replicates;
-use crate::scene::{Object, Scene, Shape, Surface};
+use crate::scene::{Object, Scene, Shape};
 use crate::shape::lanes::implicit::LaneImplicit;
 
 /// As many names as a line lists.
@@ -71,7 +72,7 @@ fn objects(scene: &Scene) -> String {
     let dressed = scene.objects.iter().map(|object| {
         let material = &scene.materials[object.value.material].value;
         let emits = material.emission.as_ref().map_or("", |_| ", emitting");
-        let dress = format!("{}{emits}", surface_kind(&material.surface));
+        let dress = format!("{}{emits}", material.surface.words());
         format!("{} ({dress})", shape_kind(&object.value))
     });
     format!("objects: {}", counted(dressed))
@@ -88,18 +89,6 @@ fn shape_kind(object: &Object) -> String {
     match implicit.name {
         Some(name) => format!("implicit {name} {what}"),
         None => format!("implicit surface {what}"),
-    }
-}
-
-fn surface_kind(surface: &Surface) -> &'static str {
-    match surface {
-        Surface::Black => "black",
-        Surface::Diffuse(_) => "diffuse",
-        Surface::Conductor(_) => "metal",
-        Surface::IdealMirror(_) => "ideal mirror",
-        Surface::Glass(ior) if ior.disperses() => "dispersive glass",
-        Surface::Glass(_) => "glass",
-        Surface::Checkerboard { .. } => "checkerboard",
     }
 }
 
@@ -202,24 +191,22 @@ fn listed(names: &[String]) -> String {
     text
 }
 
-/// The branches of the loop, in words.
-fn branches(needs: Needs) -> [(&'static str, bool); 9] {
-    [
-        ("diffuse reflection", needs.diffuse),
-        ("metals", needs.conductor),
-        ("ideal mirrors", needs.ideal_mirror),
-        ("glass", needs.glass),
+/// The branches of the loop, in words, and whether they are needed.
+fn branches(needs: Needs) -> impl Iterator<Item = (&'static str, bool)> {
+    let materials = MaterialKind::ALL.iter().filter_map(move |kind| {
+        let needed = needs.materials.contains(*kind);
+        Some((kind.branch()?, needed))
+    });
+    materials.chain([
         ("dispersion", needs.dispersion),
         ("emitting surfaces", needs.emission),
         ("lens", needs.lens),
         ("implicit surfaces", needs.implicit),
-        ("checkerboards", needs.checker),
-    ]
+    ])
 }
 
 fn named(needs: Needs, wanted: bool) -> Vec<&'static str> {
-    let branches = branches(needs).into_iter();
-    let kept = branches.filter(|(_, needed)| *needed == wanted);
+    let kept = branches(needs).filter(|(_, needed)| *needed == wanted);
     kept.map(|(name, _)| name).collect()
 }
 
@@ -247,8 +234,8 @@ fn omitted(plan: &Plan) -> Option<String> {
 fn wavelengths(scene: &Scene, plan: &Plan) -> String {
     let count = plan.choices.wavelengths;
     let disperses = scene.objects.iter().filter(|object| {
-        let surface = &scene.materials[object.value.material].value.surface;
-        matches!(surface, Surface::Glass(ior) if ior.disperses())
+        let material = &scene.materials[object.value.material].value;
+        material.surface.disperses()
     });
     let names: Vec<String> = disperses.map(|object| object.name.clone()).collect();
     if names.is_empty() {

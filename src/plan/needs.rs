@@ -1,7 +1,8 @@
 //! What can happen in a scene.
 
 use crate::integrate::model::Needs;
-use crate::scene::{Light, Material, Scene, Shape, Surface};
+use crate::material::MaterialKind;
+use crate::scene::{Light, Material, Scene, Shape};
 use crate::spectrum::Spectrum;
 
 /// Materials that some object wears.
@@ -14,31 +15,25 @@ fn worn(scene: &Scene) -> impl Iterator<Item = &Material> {
 
 /// Reads the needs off the objects that exist; what is only defined needs nothing.
 pub fn needs(scene: &Scene) -> Needs {
-    let some = |f: &dyn Fn(&Material) -> bool| worn(scene).any(f);
-    let surface = |f: fn(&Surface) -> bool| some(&|m: &Material| f(&m.surface));
+    let kinds = worn(scene).map(|material| material.surface.kind);
     Needs {
-        diffuse: surface(|s| matches!(s, Surface::Diffuse(_) | Surface::Checkerboard { .. })),
-        conductor: surface(|s| matches!(s, Surface::Conductor(_))),
-        ideal_mirror: surface(|s| matches!(s, Surface::IdealMirror(_))),
-        glass: surface(|s| matches!(s, Surface::Glass(_))),
-        dispersion: surface(|s| matches!(s, Surface::Glass(ior) if ior.disperses())),
-        emission: some(&|m| m.emission.is_some()),
+        materials: kinds
+            .flat_map(|kind| [Some(kind), kind.texture_of()])
+            .flatten()
+            .collect(),
+        dispersion: worn(scene).any(|m| m.surface.disperses()),
+        emission: worn(scene).any(|m| m.emission.is_some()),
         lens: scene.camera.lens.is_some(),
         implicit: scene
             .objects
             .iter()
             .any(|o| matches!(o.value.shape, Shape::Implicit(_))),
-        checker: surface(|s| matches!(s, Surface::Checkerboard { .. })),
     }
 }
 
 /// The spectra that light takes on its way, other than refractive indices.
 pub fn spectra(scene: &Scene) -> impl Iterator<Item = &Spectrum> {
-    let surfaces = worn(scene).flat_map(|material| match &material.surface {
-        Surface::Diffuse(albedo) | Surface::IdealMirror(albedo) => std::slice::from_ref(albedo),
-        Surface::Checkerboard { albedo, .. } => albedo.as_slice(),
-        Surface::Black | Surface::Conductor(_) | Surface::Glass(_) => &[],
-    });
+    let surfaces = worn(scene).flat_map(|material| material.surface.spectra());
     let emissions = worn(scene).filter_map(|material| material.emission.as_ref());
     let lights = scene.lights.iter().map(|light| match light {
         Light::Point { intensity, .. } => intensity,
@@ -53,27 +48,18 @@ pub fn spectra(scene: &Scene) -> impl Iterator<Item = &Spectrum> {
 /// Everything switched on, whether it can happen or not.
 pub fn everything() -> Needs {
     Needs {
-        diffuse: true,
-        conductor: true,
-        ideal_mirror: true,
-        glass: true,
+        materials: MaterialKind::ALL.iter().copied().collect(),
         dispersion: true,
         emission: true,
         lens: true,
         implicit: true,
-        checker: true,
     }
 }
 
 /// Light that paths from the camera can never find: point or directional light that reaches a
 /// surface, or the camera, by way of a mirror or through glass.
 pub fn left_out(scene: &Scene) -> Vec<String> {
-    let specular = worn(scene).any(|m| {
-        matches!(
-            m.surface,
-            Surface::Conductor(_) | Surface::IdealMirror(_) | Surface::Glass(_)
-        )
-    });
+    let specular = worn(scene).any(|material| material.surface.kind.is_delta());
     if !specular {
         return Vec::new();
     }

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::extent::about_camera;
 use crate::math::affine::Affine;
-use crate::scene::{Light, Scene, Shape, Surface};
+use crate::scene::{Light, Scene, Shape};
 use crate::shape::ShapeKind;
 
 /// Points relative to a plane: the range of their signed distances.
@@ -28,11 +28,7 @@ pub fn occluders(scene: &Scene, lit: &[u32], roundoff: f64) -> Vec<u32> {
         .collect();
     let is_end = |k: usize| {
         let material = &scene.materials[scene.objects[k].value.material].value;
-        let samples = matches!(
-            material.surface,
-            Surface::Diffuse(_) | Surface::Checkerboard { .. }
-        );
-        samples || lit.contains(&(k as u32))
+        material.surface.kind.is_spread() || lit.contains(&(k as u32))
     };
     let hides = |k: usize| {
         if scene.lights.is_empty() && lit.iter().all(|&light| light as usize == k) {

@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use crate::math::instructions::Instructions;
-use crate::scene::{Named, Object, Scene, Shape, Surface};
+use crate::scene::{Named, Object, Scene, Shape};
 use crate::shape::hierarchy::Bounds;
 use crate::shape::implicit::certified::{Tier, Workspace};
 use crate::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
@@ -285,5 +285,5 @@ pub fn first_hits(
 
 fn priority(scene: &Scene, object: &Named<Object>) -> u8 {
     let material = scene.materials.get(object.value.material);
-    u8::from(material.is_some_and(|m| matches!(m.value.surface, Surface::Glass(_))))
+    u8::from(material.is_some_and(|m| m.value.surface.kind.refracts()))
 }

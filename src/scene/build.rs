@@ -5,12 +5,13 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::fields::{Complaint, Fields, Report};
-use super::spectra::{self, Role, Spectra};
+use super::spectra::{self, Spectra};
 use super::tree::{Node, Place, Table, Value};
 use super::{
     Camera, FinderChoice, Image, Lens, Light, Material, Named, Object, PrecisionChoice, Projection,
     SamplerKind, materials, objects,
 };
+use crate::declare::Role;
 use crate::spectrum::Spectrum;
 
 /// What panels can change.

@@ -1,12 +1,15 @@
-//! Reading materials.
+//! Reading materials, as [`MaterialKind`]s declare themselves.
+
+use std::sync::LazyLock;
 
 use super::fields::{Complaint, Fields};
-use super::names::{GLASSES, METALS, one_of};
-use super::spectra::{Role, Spectra};
+use super::names::one_of;
+use super::quantities;
+use super::spectra::Spectra;
 use super::tree::{Node, Value};
 use super::{Emission, Material, Named, Sides, Surface};
-use crate::spectrum::ior::{RefractiveIndex, named_glass, named_metal};
-use crate::spectrum::{NM_MAX, NM_MIN};
+use crate::declare::{self, Declaration, Parameter, Role};
+use crate::material::MaterialKind;
 
 /// The materials of a file.
 #[derive(Default)]
@@ -17,17 +20,50 @@ pub(super) struct Materials {
     pub checked: Option<Vec<Named<Material>>>,
 }
 
-const SCATTERING: &[&str] = &["diffuse", "mirror", "glass", "checkerboard", "black"];
-const KEYS: &[&str] = &[
-    "diffuse",
-    "mirror",
-    "glass",
-    "checkerboard",
-    "black",
-    "cell",
-    "emit",
-    "sides",
-];
+/// The keys that say what a material is, in the order in which messages list them.
+static KINDS: LazyLock<Vec<&str>> = LazyLock::new(|| distinct(MaterialKind::KEYS));
+/// All keys of a material.
+static KEYS: LazyLock<Vec<&str>> = LazyLock::new(|| {
+    let beside = declarations().flat_map(|own| own.beside).map(|own| own.key);
+    let keys: Vec<&str> = beside.chain(["emit", "sides"]).collect();
+    distinct(&[KINDS.as_slice(), &keys].concat())
+});
+
+fn declarations() -> impl Iterator<Item = Declaration> {
+    MaterialKind::ALL.iter().map(|kind| kind.declaration())
+}
+
+fn distinct(keys: &[&'static str]) -> Vec<&'static str> {
+    let mut found = Vec::new();
+    for key in keys {
+        if !found.contains(key) {
+            found.push(*key);
+        }
+    }
+    found
+}
+
+/// Keys of materials that exclude each other.
+pub(super) fn rivals() -> Vec<Vec<&'static str>> {
+    let mut rivals = vec![KINDS.clone()];
+    for own in declarations() {
+        let Some(within) = own.within else { continue };
+        let others = declarations().filter(|other| other.main.key == own.main.key);
+        let keys = others.flat_map(|other| quantities::keys(other.main.quantity));
+        rivals.extend(keys.map(|key| vec![within, *key]));
+    }
+    rivals
+}
+
+/// Pairs of a key of a material and one that means nothing without it.
+pub(super) fn companions() -> Vec<(&'static str, &'static str)> {
+    let pairs = |own: Declaration| {
+        own.beside
+            .iter()
+            .map(move |other| (own.main.key, other.key))
+    };
+    declarations().flat_map(pairs).collect()
+}
 
 /// Reads `[materials]`; `None` if that is no table at all.
 pub(super) fn read(spectra: &Spectra<'_>, node: Option<&Node>) -> Option<Materials> {
@@ -60,7 +96,7 @@ pub(super) fn read(spectra: &Spectra<'_>, node: Option<&Node>) -> Option<Materia
 }
 
 fn material(spectra: &Spectra<'_>, name: &str, node: &Node) -> Option<Material> {
-    let fields = Fields::open(spectra.report, format!("materials.{name}"), node, KEYS)?;
+    let fields = Fields::open(spectra.report, format!("materials.{name}"), node, &KEYS)?;
     let surface = surface(spectra, &fields);
     let emission = emission(spectra, &fields);
     Some(Material {
@@ -70,205 +106,91 @@ fn material(spectra: &Spectra<'_>, name: &str, node: &Node) -> Option<Material> 
 }
 
 fn surface(spectra: &Spectra<'_>, fields: &Fields<'_>) -> Option<Surface> {
-    let found = fields.at_most_one(SCATTERING)?;
-    let board = fields.table.entry("checkerboard");
-    if let (None, Some(cell)) = (board, fields.table.entry("cell")) {
-        let message = format!("{} without a checkerboard", fields.path("cell"));
-        return spectra.report.fail(
-            Complaint::new(cell.key_place, message)
-                .expected("checkerboard = [spectrum, spectrum] besides"),
-        );
-    }
-    let Some((kind, node)) = found else {
-        return Some(Surface::Black);
+    let found = fields.at_most_one(&KINDS)?;
+    lonely(fields, found.map(|(key, _)| key))?;
+    let Some((key, node)) = found else {
+        return Some(Surface {
+            kind: MaterialKind::Black,
+            values: Vec::new(),
+        });
     };
-    let path = fields.path(kind);
-    match kind {
-        "diffuse" => spectra
-            .spectrum(&path, node, Role::Reflectance)
-            .map(Surface::Diffuse),
-        "mirror" => mirror(spectra, &path, node),
-        "glass" => glass(spectra, &path, node).map(Surface::Glass),
-        "checkerboard" => checkerboard(spectra, fields, &path, node),
-        _ => match node.value {
-            Value::Bool(true) => Some(Surface::Black),
-            _ => spectra
-                .report
-                .fail(Complaint::new(node.place, format!("{path} is not true")).expected("true")),
-        },
+    let kind = kind(key, node)?;
+    let main = main(spectra, &fields.path(key), node, kind);
+    let beside = kind.declaration().beside.iter();
+    let beside = beside.map(|own| quantities::beside(spectra, fields, own));
+    // All are read before any is missed, so that the first complaint is the first in the file.
+    let beside: Vec<_> = beside.collect();
+    let mut values = main?;
+    for own in beside {
+        values.extend(own?);
     }
+    Some(Surface { kind, values })
 }
 
-fn checkerboard(
+/// The kind that a key means with this value.
+fn kind(key: &str, node: &Node) -> Option<MaterialKind> {
+    let kinds = MaterialKind::ALL.iter().copied();
+    let mut kinds = kinds.filter(|kind| kind.declaration().main.key == key);
+    let within = |kind: &MaterialKind| match (kind.declaration().within, &node.value) {
+        (Some(within), Value::Table(table)) => table.get(within).is_some(),
+        _ => false,
+    };
+    let plain = |kind: &MaterialKind| kind.declaration().within.is_none();
+    let named = kinds.clone().find(within);
+    named
+        .or_else(|| kinds.clone().find(plain))
+        .or_else(|| kinds.next())
+}
+
+/// Reads the main value of a kind.
+fn main(
     spectra: &Spectra<'_>,
-    fields: &Fields<'_>,
     path: &str,
     node: &Node,
-) -> Option<Surface> {
-    let expected = "an array of two spectra";
-    let nodes = spectra.report.list(path, node, expected)?;
-    let [even, odd] = nodes else {
-        let message = format!("{path} has {} entries", nodes.len());
-        return spectra
-            .report
-            .fail(Complaint::new(node.place, message).expected(expected));
+    kind: MaterialKind,
+) -> Option<Vec<declare::Value>> {
+    let own = kind.declaration();
+    let others = declarations().filter(|other| other.main.key == own.main.key);
+    let Some(within) = own.within else {
+        let parameter = |other: Declaration| {
+            let key = other.within?;
+            Some(Parameter { key, ..other.main })
+        };
+        let others: Vec<_> = others.filter_map(parameter).collect();
+        return quantities::read(spectra, path, node, own.main.quantity, &others);
     };
-    let even = spectra.spectrum(&format!("{path}[0]"), even, Role::Reflectance);
-    let odd = spectra.spectrum(&format!("{path}[1]"), odd, Role::Reflectance);
-    let cell = fields.required("cell", "cell = edge of a cell", |what, node| {
-        spectra.report.positive(what, node)
+    let keys = others.flat_map(|other| {
+        let keys = quantities::keys(other.main.quantity).iter().copied();
+        keys.chain(other.within)
     });
-    Some(Surface::Checkerboard {
-        albedo: [even?, odd?],
-        cell: cell?,
+    let keys: Vec<&str> = keys.collect();
+    let fields = Fields::open(spectra.report, path, node, &keys)?;
+    for key in keys.iter().filter(|key| **key != within) {
+        fields.at_most_one(&[within, *key])?;
+    }
+    let quantity = own.main.quantity;
+    let expected = format!("{within} = {}", quantities::form(quantity));
+    fields.required(within, &expected, |path, node| {
+        quantities::read(spectra, path, node, quantity, &[])
     })
 }
 
-fn mirror(spectra: &Spectra<'_>, path: &str, node: &Node) -> Option<Surface> {
-    let report = spectra.report;
-    match &node.value {
-        Value::Text(name) => match named_metal(name) {
-            Some(index) => Some(Surface::Conductor(index)),
-            None => {
-                let message = format!("{path} names the unknown metal \"{name}\"");
-                report.unknown(node.place, message, name, &METALS)
-            }
-        },
-        Value::Table(_) => {
-            let fields = Fields::open(report, path, node, &["n", "k", "ideal"])?;
-            let Some(ideal) = fields.get("ideal") else {
-                let n = fields.required("n", "n = spectrum", |what, node| {
-                    spectra.spectrum(what, node, Role::Index)
-                });
-                let k = fields.required("k", "k = spectrum", |what, node| {
-                    spectra.spectrum(what, node, Role::Extinction)
-                });
-                return Some(Surface::Conductor(RefractiveIndex::Complex {
-                    n: n?,
-                    k: k?,
-                }));
-            };
-            fields.at_most_one(&["ideal", "n"])?;
-            fields.at_most_one(&["ideal", "k"])?;
-            spectra
-                .spectrum(&fields.path("ideal"), ideal, Role::Reflectance)
-                .map(Surface::IdealMirror)
-        }
-        _ => report.wrong_type(
-            path,
-            node,
-            "the name of a metal, { n = spectrum, k = spectrum } or { ideal = spectrum }",
-        ),
-    }
-}
-
-fn glass(spectra: &Spectra<'_>, path: &str, node: &Node) -> Option<RefractiveIndex> {
-    let report = spectra.report;
-    match &node.value {
-        Value::Text(name) => match named_glass(name) {
-            Some(index) => Some(index),
-            None => {
-                let message = format!("{path} names the unknown glass \"{name}\"");
-                report.unknown(node.place, message, name, &GLASSES)
-            }
-        },
-        Value::Table(_) => {
-            let kinds = &["ior", "cauchy", "sellmeier"];
-            let fields = Fields::open(report, path, node, kinds)?;
-            let (kind, inner) = fields.exactly_one(kinds)?;
-            let path = fields.path(kind);
-            let index = match kind {
-                "ior" => RefractiveIndex::Constant(report.number(&path, inner)?),
-                "cauchy" => cauchy(spectra, &path, inner)?,
-                _ => sellmeier(spectra, &path, inner)?,
-            };
-            check_index(spectra, &path, inner, &index)?;
-            Some(index)
-        }
-        _ => {
-            let kinds = "the name of a glass, or a table with one of ";
-            let expected = format!("{kinds}\"ior\", \"cauchy\", \"sellmeier\"");
-            report.wrong_type(path, node, &expected)
-        }
-    }
-}
-
-fn cauchy(spectra: &Spectra<'_>, path: &str, node: &Node) -> Option<RefractiveIndex> {
-    let report = spectra.report;
-    let expected = "[A, B] or [A, B, C] for wavelengths in µm";
-    let nodes = report.list(path, node, expected)?;
-    if !(2..=3).contains(&nodes.len()) {
-        let message = format!("{path} has {} entries", nodes.len());
-        return report.fail(Complaint::new(node.place, message).expected(expected));
-    }
-    let numbers: Option<Vec<f64>> = nodes
-        .iter()
-        .enumerate()
-        .map(|(i, node)| report.number(&format!("{path}[{i}]"), node))
-        .collect();
-    numbers.map(RefractiveIndex::Cauchy)
-}
-
-fn sellmeier(spectra: &Spectra<'_>, path: &str, node: &Node) -> Option<RefractiveIndex> {
-    let report = spectra.report;
-    let fields = Fields::open(report, path, node, &["b", "c"])?;
-    let b = fields.required("b", "b = [B1, B2, B3]", |what, node| {
-        report.numbers(what, node)
-    });
-    let c = fields.required("c", "c = [C1, C2, C3] in µm²", |what, node| {
-        report.numbers(what, node)
-    });
-    Some(RefractiveIndex::Sellmeier { b: b?, c: c? })
-}
-
-/// n must be finite and at least 1 wherever light is seen.
-///
-/// Between the resonances (λ² = C) each term of the formulas is monotonic in λ, so with no
-/// resonance among the visible wavelengths every nanometre is close enough a look.
-fn check_index(
-    spectra: &Spectra<'_>,
-    path: &str,
-    node: &Node,
-    index: &RefractiveIndex,
-) -> Option<()> {
-    let expected = "a finite index of refraction of at least 1 at all visible wavelengths";
-    let fail = |message: String| {
-        spectra
-            .report
-            .fail(Complaint::new(node.place, message).expected(expected))
-    };
-    if let RefractiveIndex::Constant(n) = index {
-        return if *n >= 1.0 {
-            Some(())
-        } else {
-            fail(format!("{path} is {n}"))
-        };
-    }
-    if let RefractiveIndex::Sellmeier { b, c } = index {
-        let micrometres = (NM_MIN / 1000.0)..=(NM_MAX / 1000.0);
-        let resonance = b
-            .iter()
-            .zip(c)
-            .find(|(b, c)| **b != 0.0 && micrometres.contains(&c.sqrt()));
-        if let Some((_, c)) = resonance {
-            let nm = c.sqrt() * 1000.0;
-            return fail(format!("{path} has a resonance at {nm:.1} nm"));
-        }
-    }
-    for whole in NM_MIN as u32..=NM_MAX as u32 {
-        let n = index.n(f64::from(whole));
-        if !(n.is_finite() && n >= 1.0) {
-            let value = if n.is_nan() {
-                "no real value".to_owned()
-            } else {
-                format!("n = {n}")
-            };
-            return fail(format!("{path} has {value} at {whole} nm"));
+/// Complains of a key that belongs to a kind other than that of the key `kind`.
+fn lonely(fields: &Fields<'_>, kind: Option<&str>) -> Option<()> {
+    for (owner, key) in companions() {
+        let owned = companions().contains(&(kind.unwrap_or_default(), key));
+        if let (false, Some(entry)) = (owned, fields.table.entry(key)) {
+            let message = format!("{} without a {owner}", fields.path(key));
+            let value = declarations().find(|own| own.main.key == owner);
+            let value = value.map_or("", |own| quantities::form(own.main.quantity));
+            return fields.report.fail(
+                Complaint::new(entry.key_place, message)
+                    .expected(format!("{owner} = {value} besides")),
+            );
         }
     }
     Some(())
 }
-
 fn emission(spectra: &Spectra<'_>, fields: &Fields<'_>) -> Option<Option<Emission>> {
     let choices = [
         ("front", Sides::Front),

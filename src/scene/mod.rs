@@ -9,10 +9,12 @@ mod error;
 mod fields;
 mod file;
 mod implicit;
+mod index;
 mod materials;
 mod names;
 mod objects;
 mod overlay;
+mod quantities;
 mod spectra;
 mod transform;
 mod tree;
@@ -25,12 +27,12 @@ use std::path::Path;
 use glam::DVec3;
 
 pub use crate::camera::{Camera, Lens, Projection};
+pub use crate::material::Surface;
 use crate::math::affine::Affine;
 pub use crate::sample::SamplerKind;
 pub use crate::shape::Shape;
 pub use crate::shape::implicit::{FinderChoice, Implicit};
 use crate::spectrum::Spectrum;
-use crate::spectrum::ior::RefractiveIndex;
 
 /// A complete, validated scene description (one panel of a scene file).
 #[derive(Debug, Clone)]
@@ -165,28 +167,6 @@ pub struct Material {
     pub surface: Surface,
     /// Radiance emitted equally in all directions of the emitting sides.
     pub emission: Option<Emission>,
-}
-
-/// How light is scattered.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Surface {
-    /// Nothing is reflected.
-    Black,
-    /// Lambertian reflection with this albedo, on both sides.
-    Diffuse(Spectrum),
-    /// Smooth conductor with n + ik, unpolarised Fresnel reflectance, on both sides.
-    Conductor(RefractiveIndex),
-    /// Mirror of constant (angle-independent) reflectance, on both sides.
-    IdealMirror(Spectrum),
-    /// Smooth dielectric; the object's inside has this index, its outside is vacuum.
-    Glass(RefractiveIndex),
-    /// Lambertian checkerboard of two albedos in object coordinates.
-    Checkerboard {
-        /// Albedo of cells whose index sum is even, and of the others.
-        albedo: [Spectrum; 2],
-        /// Edge of a cell in object coordinates (canonical coordinates × [`Object::size`]).
-        cell: f64,
-    },
 }
 
 /// Emitted radiance and the sides it leaves from.

@@ -1,12 +1,12 @@
 //! Laying panels and settings over the file.
 
 use super::fields::{Complaint, Report};
+use super::materials;
 use super::tree::{self, Entry, Node, Place, Table, Value};
 
 /// Keys that exclude each other. When something laid over brings one of them, the others give
 /// way, so that a panel can turn a diffuse wall into a mirror without a contradiction.
 const RIVALS: &[&[&str]] = &[
-    &["diffuse", "mirror", "glass", "checkerboard", "black"],
     &["fov", "orthographic"],
     &[
         "table",
@@ -18,14 +18,11 @@ const RIVALS: &[&[&str]] = &[
         "radiance",
     ],
     &["ior", "cauchy", "sellmeier"],
-    &["ideal", "n"],
-    &["ideal", "k"],
     super::objects::SHAPES,
 ];
 
 /// Keys that mean nothing without a rival that has given way.
 const COMPANIONS: &[(&str, &str)] = &[
-    ("checkerboard", "cell"),
     ("table", "scale"),
     ("csv", "scale"),
     ("blackbody", "scale"),
@@ -67,13 +64,17 @@ pub(super) fn merge(base: &mut Table, over: &Table) {
 
 /// Removes the rivals of `key` (and what belongs to them) from a table it is laid over.
 fn give_way(base: &mut Table, key: &str) {
-    for group in RIVALS.iter().filter(|group| group.contains(&key)) {
+    let materials = materials::rivals();
+    let groups = RIVALS.iter().copied();
+    let groups = groups.chain(materials.iter().map(Vec::as_slice));
+    let companions = [COMPANIONS, &materials::companions()].concat();
+    for group in groups.filter(|group| group.contains(&key)) {
         for rival in group.iter().filter(|rival| **rival != key) {
             if base.get(rival).is_none() {
                 continue;
             }
             base.entries.retain(|e| e.key != *rival);
-            for (_, companion) in COMPANIONS.iter().filter(|(owner, _)| owner == rival) {
+            for (_, companion) in companions.iter().filter(|(owner, _)| owner == rival) {
                 base.entries.retain(|e| e.key != *companion);
             }
         }

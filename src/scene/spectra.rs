@@ -6,6 +6,7 @@ use std::path::Path;
 use super::fields::{Complaint, Fields, Report};
 use super::file;
 use super::tree::{Node, Table, Value};
+use crate::declare::Role;
 use crate::spectrum::{self, NM_MAX, NM_MIN, RgbError, SPECTRUM_NAMES, Spectrum};
 
 /// A spectrum as written; what a colour becomes depends on where it is used.
@@ -13,19 +14,6 @@ use crate::spectrum::{self, NM_MAX, NM_MIN, RgbError, SPECTRUM_NAMES, Spectrum};
 enum Draft {
     Fixed(Spectrum),
     Rgb([f64; 3]),
-}
-
-/// What a spectrum is used as, which decides the values it may have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
-    /// Values in [0, 1].
-    Reflectance,
-    /// Values from 0.
-    Emission,
-    /// Real part of a refractive index: values above 0.
-    Index,
-    /// Extinction coefficient: values from 0.
-    Extinction,
 }
 
 /// Everything needed to read a spectrum: the named ones, and where files are looked for.

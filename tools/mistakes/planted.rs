@@ -6,15 +6,16 @@
 //! both are also planted in the loop itself, where scenes may have all directions.
 
 use etalon::camera::LaneCamera;
+use etalon::declare::Value;
 use etalon::integrate::model::{Appearance, Model};
 use etalon::integrate::parts::Parts;
-#[cfg(feature = "planted")]
-use etalon::integrate::planted::Planted;
 use etalon::light::{LightShape, SmallLights};
 use etalon::material::{MaterialKind, fresnel};
 use etalon::math::lanes::Scalar;
 use etalon::plan::{Plan, Tables};
-use etalon::scene::{Scene, Surface};
+#[cfg(feature = "planted")]
+use etalon::planted::Planted;
+use etalon::scene::Scene;
 use etalon::spectrum::grid::{CELLS, LONGEST, SHORTEST, WavelengthGrid};
 
 /// What can be wrong.
@@ -107,7 +108,7 @@ fn planted<T: Scalar>(mistake: Mistake, scene: &Scene, model: &mut Model<T>) -> 
             model.planted = Some(mistake);
             match mistake {
                 Planted::Cosine => !model.lights.is_empty(),
-                Planted::Polarisation => model.needs.conductor,
+                Planted::Polarisation => model.needs.materials.contains(MaterialKind::Conductor),
             }
         }
     }
@@ -184,9 +185,12 @@ fn polarisation<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
     }
     for object in 0..model.appearances.len() {
         let material = &scene.materials[model.appearances[object].material as usize].value;
-        let Surface::Conductor(index) = &material.surface else {
+        let [Value::Index(index)] = material.surface.values.as_slice() else {
             continue;
         };
+        if material.surface.kind != MaterialKind::Conductor {
+            continue;
+        }
         let values: Vec<f64> = middles()
             .into_iter()
             .map(|nm| {
@@ -201,7 +205,7 @@ fn polarisation<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
         found = true;
     }
     if found {
-        model.needs.ideal_mirror = true;
+        model.needs.materials = [MaterialKind::Mirror].into_iter().collect();
         refresh(model);
     }
     found

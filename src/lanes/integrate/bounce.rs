@@ -1,16 +1,16 @@
 //! One segment of every path: find the surface, take its light, sample the lights, scatter.
 
-use super::chunk::CHUNK;
-use super::intersect::{Leaving, NOTHING, Nearest, Rungs, lane_vector, nearest};
+use super::chunk::{CHUNK, Workspace};
+use super::intersect::{Leaving, NOTHING, Rungs, lane_vector, nearest};
 use super::model::Model;
 use super::pool::{
     Carried, IntField, Pool, RealField, Rows, WIDEST, any, array, bit_where, each, flags, has,
     int_array,
 };
 use super::replay::{ScatteredVertex, Vertex};
-use super::scatter::Scattered;
+use super::scatter::Meeting;
 use super::surface::{Arrival, Surfaces, surfaces};
-use crate::material::MaterialKind;
+use crate::material::{Event, MaterialKind};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 use crate::sample::Slot;
@@ -33,8 +33,10 @@ pub struct Step<'a, L: Lanes, const C: usize> {
     pub rows: &'a mut Rows<L::Scalar, C>,
     /// Which arithmetic decided.
     pub rungs: &'a mut Rungs,
+    /// Rows of the paths that go on beyond `max_depth`.
+    pub beyond_slots: &'a mut Vec<u32>,
     /// The vertex being written down, of lane 0.
-    pub vertex: Option<&'a mut Vertex>,
+    pub vertex: Option<Vertex>,
     /// Where the spectra of each lane are.
     pub slots: [u32; WIDEST],
     /// Which row of every table holds the wavelengths.
@@ -58,17 +60,20 @@ pub struct Places {
 
 /// Advances a packet by one segment and returns how many of its paths go on.
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "the parts of one worker's state")]
 pub fn bounce<L: Lanes, const C: usize>(
     l: L,
     model: &Model<L::Scalar>,
-    pool: &mut Pool<L::Scalar>,
-    rows: &mut Rows<L::Scalar, C>,
-    beyond_slots: &mut Vec<u32>,
+    workspace: &mut Workspace<L::Scalar, C>,
     Places { at, to }: Places,
-    rungs: &mut Rungs,
-    trace: &mut Option<Vec<Vertex>>,
 ) -> usize {
+    let Workspace {
+        pool,
+        rows,
+        beyond_slots,
+        rungs,
+        trace,
+        ..
+    } = workspace;
     let active = l.mask_from_bits(pool.active::<L>(at));
     let ray = LaneRay::<L>::new(
         l,
@@ -79,6 +84,7 @@ pub fn bounce<L: Lanes, const C: usize>(
         model,
         rows,
         rungs,
+        beyond_slots,
         vertex: None,
         slots: int_array(l, pool.int(l, IntField::Slot, at)),
         row: pool.int(l, IntField::Row, at),
@@ -93,68 +99,25 @@ pub fn bounce<L: Lanes, const C: usize>(
         object: pool.int(l, IntField::Departure, at),
         inward: has(l, step.flags, flags::INWARD),
     };
-
-    let found = nearest(l, model, &ray, &leaving, active, step.rungs);
-    let hit = active & !found.part.same(l.int(NOTHING));
-    if let Some(environment) = model.environment {
-        step.add(l, active & !hit, l.int(environment), l.real(1.0));
-    }
     let arrival = Arrival {
+        ray: &ray,
+        leaving: &leaving,
+        nearest: nearest(l, model, &ray, &leaving, active, step.rungs),
         pdf: pool.real(l, RealField::Pdf, 0, at),
         specular: has(l, step.flags, flags::SPECULAR),
     };
-    let surface = surfaces(l, model, &ray, &found, &arrival, &leaving, hit);
-    let mut vertex = trace
-        .is_some()
-        .then(|| step.vertex(l, &ray, &found, &surface, &arrival));
-    step.vertex = vertex.as_mut();
-    if model.needs.emission {
-        step.add(l, surface.emits, surface.emission, surface.emission_weight);
-    }
-
-    let scatters = hit & !surface.kind.same(l.int(MaterialKind::Black as u32));
-    let beyond = has(l, step.flags, flags::BEYOND);
-    let within = step.depth.plus(l.int(1)).below(l.int(model.max_depth));
-    let mut going = scatters & (within | beyond);
-    let cut = scatters & !going;
-    if any(cut) {
-        let u = model.sequence.single(l, step.id, Slot::Beyond, step.depth);
-        let chosen = cut & u.lt(l.real(BEYOND_SHARE));
-        step.go_beyond(l, chosen, beyond_slots);
-        going = going | chosen;
-    }
-
-    let next = step.scatter(l, &ray, &surface, going);
+    let (surface, going) = step.arrive(l, &arrival, active, trace.is_some());
+    let meeting = Meeting {
+        surface: &surface,
+        wo: -ray.direction,
+        normal: Vec3::select(l, surface.front, surface.normal, -surface.normal),
+        going,
+    };
+    let next = step.scatter(l, &meeting);
     let alive = active & step.roulette(l, going);
     step.note_end(l, &next, alive);
-
-    let kept = step.flags & l.int(flags::TERMINATED | flags::BEYOND);
-    let flags = kept
-        | bit_where(l, next.inward, flags::INWARD)
-        | bit_where(l, next.specular, flags::SPECULAR);
-    let slots = l.load_int(&step.slots);
-    let depth = step.depth.plus(l.int(1));
-    for (field, v) in [
-        (RealField::Origin, surface.point),
-        (RealField::Direction, next.direction),
-    ] {
-        pool.keep_real(l, field, 0, to, (v.x, alive));
-        pool.keep_real(l, field, 1, to, (v.y, alive));
-        pool.keep_real(l, field, 2, to, (v.z, alive));
-    }
-    pool.keep_real(l, RealField::Pdf, 0, to, (next.pdf, alive));
-    for (field, x) in [
-        (IntField::Departure, surface.object),
-        (IntField::Flags, flags),
-        (IntField::Depth, depth),
-        (IntField::Key, step.id.key),
-        (IntField::Index, step.id.index),
-        (IntField::Slot, slots),
-        (IntField::Row, step.row),
-    ] {
-        pool.keep_int(l, field, to, (x, alive));
-    }
-    if let (Some(trace), Some(vertex)) = (trace, vertex) {
+    step.keep(l, pool, &meeting, &next, (to, alive));
+    if let (Some(trace), Some(vertex)) = (trace, step.vertex) {
         trace.push(vertex);
     }
     alive.bits().count_ones() as usize
@@ -175,22 +138,87 @@ pub fn some_object(index: u32) -> Option<u32> {
 }
 
 impl<L: Lanes, const C: usize> Step<'_, L, C> {
-    /// Lane 0 on arrival.
-    #[cold]
-    fn vertex(
+    /// Takes the light of what has been met, and decides which paths go on from there.
+    #[inline(always)]
+    fn arrive(
+        &mut self,
+        l: L,
+        arrival: &Arrival<'_, L>,
+        active: L::Mask,
+        written_down: bool,
+    ) -> (Surfaces<L>, L::Mask) {
+        let model = self.model;
+        let hit = active & !arrival.nearest.part.same(l.int(NOTHING));
+        if let Some(environment) = model.environment {
+            self.add(l, active & !hit, l.int(environment), l.real(1.0));
+        }
+        let surface = surfaces(l, model, arrival, hit);
+        if written_down {
+            self.vertex = Some(self.vertex(l, arrival, &surface));
+        }
+        if model.needs.emission {
+            self.add(l, surface.emits, surface.emission, surface.emission_weight);
+        }
+
+        let scatters = hit & !surface.kind.same(l.int(MaterialKind::Black as u32));
+        let beyond = has(l, self.flags, flags::BEYOND);
+        let within = self.depth.plus(l.int(1)).below(l.int(model.max_depth));
+        let mut going = scatters & (within | beyond);
+        let cut = scatters & !going;
+        if any(cut) {
+            let u = model.sequence.single(l, self.id, Slot::Beyond, self.depth);
+            let chosen = cut & u.lt(l.real(BEYOND_SHARE));
+            self.go_beyond(l, chosen);
+            going = going | chosen;
+        }
+        (surface, going)
+    }
+
+    /// Writes down how the paths go on, those that live.
+    #[inline(always)]
+    fn keep(
         &self,
         l: L,
-        ray: &LaneRay<L>,
-        found: &Nearest<L>,
-        surface: &Surfaces<L>,
-        arrival: &Arrival<L>,
-    ) -> Vertex {
+        pool: &mut Pool<L::Scalar>,
+        meeting: &Meeting<'_, L>,
+        next: &Event<L>,
+        (to, alive): (usize, L::Mask),
+    ) {
+        let Leaving { object, inward } = meeting.leaving(next.transmitted);
+        let kept = self.flags & l.int(flags::TERMINATED | flags::BEYOND);
+        let flags =
+            kept | bit_where(l, inward, flags::INWARD) | bit_where(l, next.delta, flags::SPECULAR);
+        for (field, v) in [
+            (RealField::Origin, meeting.surface.point),
+            (RealField::Direction, next.direction),
+        ] {
+            pool.keep_real(l, field, 0, to, (v.x, alive));
+            pool.keep_real(l, field, 1, to, (v.y, alive));
+            pool.keep_real(l, field, 2, to, (v.z, alive));
+        }
+        pool.keep_real(l, RealField::Pdf, 0, to, (next.pdf, alive));
+        for (field, x) in [
+            (IntField::Departure, object),
+            (IntField::Flags, flags),
+            (IntField::Depth, self.depth.plus(l.int(1))),
+            (IntField::Key, self.id.key),
+            (IntField::Index, self.id.index),
+            (IntField::Slot, l.load_int(&self.slots)),
+            (IntField::Row, self.row),
+        ] {
+            pool.keep_int(l, field, to, (x, alive));
+        }
+    }
+
+    /// Lane 0 on arrival.
+    #[cold]
+    fn vertex(&self, l: L, arrival: &Arrival<'_, L>, surface: &Surfaces<L>) -> Vertex {
         let set = |m: L::Mask| m.bits() & 1 == 1;
         Vertex {
             depth: l.int_lane(self.depth, 0),
-            origin: lane_vector(l, ray.origin, 0),
-            direction: lane_vector(l, ray.direction, 0),
-            distance: l.lane(found.t, 0).to_f64(),
+            origin: lane_vector(l, arrival.ray.origin, 0),
+            direction: lane_vector(l, arrival.ray.direction, 0),
+            distance: l.lane(arrival.nearest.t, 0).to_f64(),
             object: some_object(l.int_lane(surface.object, 0)),
             point: lane_vector(l, surface.point, 0),
             normal: lane_vector(l, surface.normal, 0),
@@ -216,10 +244,10 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
 
     /// Writes down how lane 0 goes on.
     #[inline(always)]
-    fn note_end(&mut self, l: L, next: &Scattered<L>, alive: L::Mask) {
+    fn note_end(&mut self, l: L, next: &Event<L>, alive: L::Mask) {
         if self.vertex.is_some() {
             let goes_on = alive.bits() & 1 == 1;
-            let specular = next.specular.bits() & 1 == 1;
+            let specular = next.delta.bits() & 1 == 1;
             let scattered = goes_on.then(|| ScatteredVertex {
                 direction: lane_vector(l, next.direction, 0),
                 pdf: (!specular).then(|| l.lane(next.pdf, 0).to_f64()),
@@ -259,29 +287,10 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         }
     }
 
-    /// Multiplies the throughput by a spectrum where the mask is true.
-    #[inline(always)]
-    pub fn multiply_by(&mut self, l: L, m: L::Mask, spectrum: L::Int) {
-        let at = self.table_rows(l, spectrum);
-        let table = self.model.spectra.rows::<C>();
-        for i in each(m.bits()) {
-            self.multiply(i % WIDEST, &table[at[i % WIDEST] as usize]);
-        }
-    }
-
     /// Numbers of the table rows that hold a spectrum at each lane's wavelengths.
     #[inline(always)]
     pub fn table_rows(&self, l: L, spectrum: L::Int) -> [u32; WIDEST] {
         int_array(l, spectrum.plus(self.row))
-    }
-
-    /// Multiplies a lane's throughput by a spectrum of factors.
-    #[inline(always)]
-    pub fn multiply(&mut self, i: usize, factors: &[L::Scalar; C]) {
-        let throughput = &mut self.rows.paths[self.slots[i] as usize].throughput;
-        for c in 0..C {
-            throughput[c] = throughput[c] * factors[c];
-        }
     }
 
     /// A lane's largest throughput over the wavelengths.
@@ -300,7 +309,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
 
     /// Lets paths at `max_depth` go on in rows of their own, for the cut-off estimate.
     #[inline(always)]
-    fn go_beyond(&mut self, l: L, chosen: L::Mask, beyond_slots: &mut Vec<u32>) {
+    fn go_beyond(&mut self, l: L, chosen: L::Mask) {
         for i in each(chosen.bits()) {
             let slot = self.slots[i] as usize;
             let own = slot + CHUNK;
@@ -314,7 +323,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             rows.hero[own] = rows.hero[slot];
             rows.fraction[own] = rows.fraction[slot];
             self.slots[i] = own as u32;
-            beyond_slots.push(own as u32);
+            self.beyond_slots.push(own as u32);
         }
         self.flags = self.flags | bit_where(l, chosen, flags::BEYOND);
     }

@@ -98,11 +98,12 @@ pub struct Beyond {
 /// Buffers of one worker, used again for every chunk.
 #[derive(Debug)]
 pub struct Workspace<T, const C: usize> {
-    pool: Pool<T>,
+    /// Paths in flight.
+    pub pool: Pool<T>,
     /// Spectra by sample; behind [`CHUNK`] those of the paths that go on beyond `max_depth`.
     pub rows: Rows<T, C>,
     /// Samples of this chunk whose paths went on.
-    beyond_slots: Vec<u32>,
+    pub(super) beyond_slots: Vec<u32>,
     /// X, Y, Z by sample.
     pub tristimulus: Vec<[T; 3]>,
     /// Which arithmetic decided.
@@ -126,6 +127,22 @@ impl<T: Scalar, const C: usize> Workspace<T, C> {
             trace: None,
         }
     }
+
+    /// Turns the radiance of so many samples into tristimulus values.
+    #[inline(always)]
+    fn develop(&mut self, spectrometer: &Spectrometer<T>, samples: usize) {
+        self.tristimulus.resize(samples, [T::default(); 3]);
+        for (slot, xyz) in self.tristimulus.iter_mut().enumerate() {
+            *xyz = spectrometer.tristimulus(&self.rows, slot);
+        }
+        // In the order of the samples, not of the paths' ends.
+        self.beyond_slots.sort_unstable();
+        for &slot in &self.beyond_slots {
+            let y = spectrometer.tristimulus(&self.rows, slot as usize)[1].to_f64();
+            self.beyond.sum += y;
+            self.beyond.squares += y * y;
+        }
+    }
 }
 
 impl<T: Scalar, const C: usize> Default for Workspace<T, C> {
@@ -145,46 +162,27 @@ pub fn render<L: Lanes, const C: usize>(
     requests: &Requests,
     workspace: &mut Workspace<L::Scalar, C>,
 ) {
-    let Workspace {
-        pool,
-        rows,
-        beyond_slots,
-        tristimulus,
-        rungs,
-        beyond,
-        trace,
-    } = workspace;
-    pool.length = 0;
-    beyond_slots.clear();
+    workspace.pool.length = 0;
+    workspace.beyond_slots.clear();
     let mut taken = 0;
     loop {
-        while taken < requests.len() && pool.length + L::COUNT <= POOL {
+        while taken < requests.len() && workspace.pool.length + L::COUNT <= POOL {
             let end = requests.len().min(taken + L::COUNT);
-            start(l, model, requests, taken..end, pool, rows);
+            start(l, model, requests, taken..end, workspace);
             taken = end;
         }
-        if pool.length == 0 {
+        if workspace.pool.length == 0 {
             break;
         }
         let mut going_on = 0;
-        for at in (0..pool.length).step_by(L::COUNT) {
+        for at in (0..workspace.pool.length).step_by(L::COUNT) {
             // Survivors never reach beyond the packet that is being worked on.
             let places = Places { at, to: going_on };
-            going_on += bounce(l, model, pool, rows, beyond_slots, places, rungs, trace);
+            going_on += bounce(l, model, workspace, places);
         }
-        pool.length = going_on;
+        workspace.pool.length = going_on;
     }
-    tristimulus.resize(requests.len(), [L::Scalar::from_f64(0.0); 3]);
-    for (slot, xyz) in tristimulus.iter_mut().enumerate() {
-        *xyz = spectrometer.tristimulus(rows, slot);
-    }
-    // In the order of the samples, not of the paths' ends.
-    beyond_slots.sort_unstable();
-    for &slot in beyond_slots.iter() {
-        let y = spectrometer.tristimulus(rows, slot as usize)[1].to_f64();
-        beyond.sum += y;
-        beyond.squares += y * y;
-    }
+    workspace.develop(spectrometer, requests.len());
 }
 
 /// Puts the camera rays of the requests in `range`, at most one packet, at the end of the pool.
@@ -194,9 +192,9 @@ fn start<L: Lanes, const C: usize>(
     model: &Model<L::Scalar>,
     requests: &Requests,
     range: Range<usize>,
-    pool: &mut Pool<L::Scalar>,
-    rows: &mut Rows<L::Scalar, C>,
+    workspace: &mut Workspace<L::Scalar, C>,
 ) {
+    let Workspace { pool, rows, .. } = workspace;
     let first = range.start;
     let count = range.len();
     let x = l.load_int(&requests.x[first..]);

@@ -5,43 +5,60 @@ use super::bounce::{Step, some_object};
 use super::intersect::{Leaving, NOTHING, Shadow, lane_vector, occluded};
 use super::pool::{WIDEST, any, array, each};
 use super::replay::LightVertex;
+use super::scatter::Meeting;
 use crate::light::Towards;
+use crate::material::{Interface, Material, Transport, each_material};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::lookup::SMALL;
 use crate::math::vec3::Vec3;
 use crate::sample::Slot;
+use crate::sample::mis::power_weight;
 use crate::sample::warp::cosine_hemisphere_pdf;
 use crate::shape::lanes::LaneRay;
 
-/// Where light is received.
-#[derive(Clone, Copy)]
-pub struct Receiver<L: Lanes> {
-    /// Points.
-    pub point: Vec3<L::Real>,
-    /// Unit normals on the side that scatters.
-    pub normal: Vec3<L::Real>,
-    /// The surfaces' objects, and whether the scattering side is their inside.
-    pub leaving: Leaving<L>,
-}
-
 /// What arrives from sampled lights.
 pub struct Lit<L: Lanes> {
+    /// Where it does.
+    pub arrives: L::Mask,
+    /// wi: unit directions towards the lights.
+    pub direction: Vec3<L::Real>,
     /// Spectrum of the light.
     pub spectrum: L::Int,
-    /// What its spectrum is multiplied with beside throughput and albedo; 0 where it is hidden.
+    /// What its spectrum is multiplied with beside throughput and bsdf, or albedo where the material
+    /// is Lambertian; 0 where it is hidden.
     pub weight: L::Real,
 }
 
 /// Points of lights, one a lane.
-struct Sampled<L: Lanes> {
+pub struct Sampled<L: Lanes> {
     /// How they are seen; the density contains the probability of the light.
-    towards: Towards<L>,
+    pub towards: Towards<L>,
     /// Spectra of the lights.
-    spectrum: L::Int,
+    pub spectrum: L::Int,
     /// Their objects.
-    object: L::Int,
+    pub object: L::Int,
     /// Scattered rays can hit them.
-    extended: L::Mask,
+    pub extended: L::Mask,
+}
+
+impl<L: Lanes> Sampled<L> {
+    /// The weight of light that a material evaluates: |cos| · mis weight/pdf, where `pdf` is the
+    /// density with which the material would choose the direction.
+    #[inline(always)]
+    pub fn weight(&self, l: L, cosine: L::Real, pdf: L::Real) -> L::Real {
+        let share = power_weight(l, self.towards.pdf, pdf);
+        let share = l.select(self.extended, share, l.real(1.0));
+        cosine.abs() * share / self.towards.pdf
+    }
+
+    /// The same for Lambertian surfaces, beside the albedo: with q the ratio of the densities, the
+    /// power heuristic is 1/(1 + q²), and bsdf · cos/pdf is q times the albedo.
+    #[inline(always)]
+    pub fn lambertian_weight(&self, l: L, cosine: L::Real) -> L::Real {
+        let ratio = cosine_hemisphere_pdf(l, cosine) / self.towards.pdf;
+        let shared = ratio / ratio.mul_add(ratio, l.real(1.0));
+        l.select(self.extended, shared, ratio)
+    }
 }
 
 impl<L: Lanes, const C: usize> Step<'_, L, C> {
@@ -50,23 +67,39 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     pub fn direct(
         &mut self,
         l: L,
-        receiver: &Receiver<L>,
+        meeting: &Meeting<'_, L>,
         m: L::Mask,
         numbers: [L::Real; 2],
     ) -> Lit<L> {
         let zero = l.real(0.0);
-        let light = self.sample_lights(l, receiver, m, numbers);
-        let cosine = light.towards.direction.dot(receiver.normal);
-        // With q the ratio of the densities, the power heuristic is 1/(1 + q²) (see `sample::mis`),
-        // and bsdf · cos/pdf is q times the albedo.
-        let ratio = cosine_hemisphere_pdf(l, cosine) / light.towards.pdf;
-        let shared = ratio / ratio.mul_add(ratio, l.real(1.0));
-        let weight = l.select(light.extended, shared, ratio);
+        let light = self.sample_lights(l, meeting, m, numbers);
+        let direction = light.towards.direction;
+        let cosine = direction.dot(meeting.normal);
+        let mut weight = light.lambertian_weight(l, cosine);
         #[cfg(feature = "planted")]
-        let weight = super::planted::light_weight(l, self.model.planted, weight, cosine);
-        let asked = m & light.towards.valid & cosine.gt(zero) & weight.gt(zero);
-        let arrives = self.arrives(l, receiver, &light, asked, weight);
+        {
+            weight = crate::planted::light_weight(l, self.model.planted, weight, cosine);
+        }
+        let mut scatters = cosine.gt(zero);
+        let mut across = l.mask(false);
+        each_material!(M => if M::SPREAD && !M::LAMBERTIAN && self.has::<M>() {
+            let own = m & meeting.of(l, M::KIND);
+            if any(own) {
+                let (at, _) = self.interface::<M>(l, meeting, own);
+                let nowhere = Interface { lanes: l.mask(false), ..at };
+                let directions = [meeting.wo, direction];
+                let densities = M::evaluate(l, &nowhere, directions, Transport::Radiance, |_, _| {});
+                weight = l.select(own, light.weight(l, cosine, densities.pdf), weight);
+                scatters = (scatters & !own) | (own & densities.pdf.gt(zero));
+                across = across | (own & cosine.lt(zero));
+            }
+        });
+        let asked = m & light.towards.valid & scatters & weight.gt(zero);
+        let leaving = meeting.leaving(across);
+        let arrives = self.arrives(l, meeting.surface.point, &leaving, &light, (asked, weight));
         Lit {
+            arrives,
+            direction,
             spectrum: light.spectrum,
             weight: l.select(arrives, weight, zero),
         }
@@ -77,7 +110,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     fn sample_lights(
         &self,
         l: L,
-        receiver: &Receiver<L>,
+        meeting: &Meeting<'_, L>,
         m: L::Mask,
         [u, v]: [L::Real; 2],
     ) -> Sampled<L> {
@@ -86,7 +119,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let zero = l.real(0.0);
         let mut sampled = Sampled {
             towards: Towards {
-                direction: receiver.normal,
+                direction: meeting.normal,
                 distance: zero,
                 pdf: zero,
                 valid: l.mask(false),
@@ -95,13 +128,13 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             object: l.int(NOTHING),
             extended: l.mask(true),
         };
-        let left = self.sample_spheres(l, receiver, (chosen, m), numbers, &mut sampled);
+        let left = self.sample_spheres(l, meeting, (chosen, m), numbers, &mut sampled);
         let mut pending = left.bits();
         while pending != 0 {
             let k = l.int_lane(chosen, pending.trailing_zeros() as usize);
             let here = m & chosen.same(l.int(k));
             pending &= !here.bits();
-            self.sample_light(l, receiver, (k, here), numbers, &mut sampled);
+            self.sample_light(l, meeting, (k, here), numbers, &mut sampled);
         }
         sampled
     }
@@ -111,7 +144,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     fn sample_spheres(
         &self,
         l: L,
-        receiver: &Receiver<L>,
+        meeting: &Meeting<'_, L>,
         (chosen, m): (L::Int, L::Mask),
         numbers: [L::Real; 2],
         sampled: &mut Sampled<L>,
@@ -124,7 +157,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             return m;
         }
         let lights = table.spheres.at(l, chosen);
-        let own = lights.sample(l, receiver.point, numbers, spheres);
+        let own = lights.sample(l, meeting.surface.point, numbers, spheres);
         sampled.towards = Towards {
             pdf: own.pdf * l.lookup(&table.probability, chosen),
             valid: spheres & own.valid,
@@ -140,17 +173,17 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     fn sample_light(
         &self,
         l: L,
-        receiver: &Receiver<L>,
+        meeting: &Meeting<'_, L>,
         (k, here): (u32, L::Mask),
         numbers: [L::Real; 2],
         sampled: &mut Sampled<L>,
     ) {
         let light = &self.model.lights[k as usize];
-        let own = light.shape.sample(l, receiver.point, numbers);
+        let own = light.shape.sample(l, meeting.surface.point, numbers);
         let pdf = own.pdf * l.splat(light.probability);
         let mut valid = here & own.valid;
         if light.shape.is_flat() {
-            valid = valid & !receiver.leaving.object.same(l.int(light.object));
+            valid = valid & !meeting.surface.object.same(l.int(light.object));
         }
         let towards = &mut sampled.towards;
         towards.direction = Vec3::select(l, here, own.direction, towards.direction);
@@ -164,15 +197,15 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         }
     }
 
-    /// Where nothing stands between receiver and light, of the lanes that ask.
+    /// Where nothing stands between a surface and its light, of the lanes that ask.
     #[inline(always)]
     fn arrives(
         &mut self,
         l: L,
-        receiver: &Receiver<L>,
+        point: Vec3<L::Real>,
+        leaving: &Leaving<L>,
         light: &Sampled<L>,
-        asked: L::Mask,
-        weight: L::Real,
+        (asked, weight): (L::Mask, L::Real),
     ) -> L::Mask {
         if !any(asked) {
             return asked;
@@ -183,11 +216,10 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             ..
         } = light.towards;
         let shadow = Shadow {
-            ray: LaneRay::new(l, receiver.point, direction),
+            ray: LaneRay::new(l, point, direction),
             limit: distance,
             except: light.object,
         };
-        let leaving = &receiver.leaving;
         let blocked = occluded(l, self.model, &shadow, leaving, asked, self.rungs);
         if let Some(vertex) = &mut self.vertex
             && asked.bits() & 1 == 1

@@ -15,8 +15,6 @@ pub mod list;
 mod many;
 pub mod model;
 pub mod parts;
-#[cfg(feature = "planted")]
-pub mod planted;
 pub mod pool;
 pub mod replay;
 pub mod scatter;

@@ -4,7 +4,7 @@ use super::list::List;
 use super::parts::Parts;
 use crate::camera::LaneCamera;
 use crate::light::{LaneLight, SmallLights};
-use crate::material::Record;
+use crate::material::{MaterialKinds, Record};
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Sequence;
 use crate::shape::hierarchy::{Bounds, Hierarchy, Item};
@@ -31,14 +31,8 @@ pub struct Appearance<T> {
 /// What can happen in the scene: the loop's branches, the same for all lanes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Needs {
-    /// Some surface is Lambertian.
-    pub diffuse: bool,
-    /// Some surface is a conductor.
-    pub conductor: bool,
-    /// Some surface is a mirror of constant reflectance.
-    pub ideal_mirror: bool,
-    /// Some surface is glass.
-    pub glass: bool,
+    /// The materials that some surface has.
+    pub materials: MaterialKinds,
     /// Some glass disperses.
     pub dispersion: bool,
     /// Some surface emits.
@@ -47,8 +41,6 @@ pub struct Needs {
     pub lens: bool,
     /// Some object is an implicit surface.
     pub implicit: bool,
-    /// Some object is a checkerboard.
-    pub checker: bool,
 }
 
 /// Many objects.
@@ -146,7 +138,7 @@ pub struct Model<T: Scalar> {
     pub resolver: Resolver,
     /// A deliberate mistake.
     #[cfg(feature = "planted")]
-    pub planted: Option<super::planted::Planted>,
+    pub planted: Option<crate::planted::Planted>,
 }
 
 impl<T: Scalar> Model<T> {

@@ -7,6 +7,7 @@
 
 pub use crate::math::lanes::WIDEST;
 use crate::math::lanes::{Int, Lanes, Mask, Scalar};
+pub use crate::math::packet::{array, each, int_array};
 
 /// Real numbers of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,6 +86,23 @@ impl<T: Scalar, const C: usize> Carried<T, C> {
         Self {
             throughput: [T::from_f64(1.0); C],
             radiance: [T::default(); C],
+        }
+    }
+
+    /// Multiplies the throughput.
+    #[inline(always)]
+    pub fn weigh(&mut self, factors: &[T; C]) {
+        for c in 0..C {
+            self.throughput[c] = self.throughput[c] * factors[c];
+        }
+    }
+
+    /// Adds throughput × weight × value × emission to the radiance.
+    #[inline(always)]
+    pub fn receive(&mut self, weight: T, value: &[T; C], emission: &[T; C]) {
+        for c in 0..C {
+            let scattered = self.throughput[c] * weight * value[c];
+            self.radiance[c] = scattered.fused(emission[c], self.radiance[c]);
         }
     }
 }
@@ -224,36 +242,4 @@ pub fn bit_where<L: Lanes>(l: L, m: L::Mask, bit: u32) -> L::Int {
 #[inline(always)]
 pub fn any<M: Mask>(m: M) -> bool {
     m.any()
-}
-
-/// The numbers of the true lanes, in order.
-#[inline(always)]
-pub fn each(mut bits: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(
-        #[inline(always)]
-        move || {
-            if bits == 0 {
-                return None;
-            }
-            let i = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            Some(i)
-        },
-    )
-}
-
-/// A packet of reals as an array; unused places are zero.
-#[inline(always)]
-pub fn array<L: Lanes>(l: L, x: L::Real) -> [L::Scalar; WIDEST] {
-    let mut out = [L::Scalar::default(); WIDEST];
-    l.store(x, &mut out);
-    out
-}
-
-/// A packet of integers as an array; unused places are zero.
-#[inline(always)]
-pub fn int_array<L: Lanes>(l: L, x: L::Int) -> [u32; WIDEST] {
-    let mut out = [0; WIDEST];
-    l.store_int(x, &mut out);
-    out
 }

@@ -36,9 +36,14 @@ pub struct Surfaces<L: Lanes> {
     pub emission_weight: L::Real,
 }
 
-/// What light sampling knows of the ray that came here.
-#[derive(Clone, Copy)]
-pub struct Arrival<L: Lanes> {
+/// Rays that have come to surfaces.
+pub struct Arrival<'a, L: Lanes> {
+    /// The rays.
+    pub ray: &'a LaneRay<L>,
+    /// What they come from.
+    pub leaving: &'a Leaving<L>,
+    /// What they have met.
+    pub nearest: Nearest<L>,
     /// Density with which the direction was sampled.
     pub pdf: L::Real,
     /// Light sampling could not have found it.
@@ -50,15 +55,18 @@ pub struct Arrival<L: Lanes> {
 pub fn surfaces<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
-    ray: &LaneRay<L>,
-    nearest: &Nearest<L>,
-    arrival: &Arrival<L>,
-    leaving: &Leaving<L>,
+    arrival: &Arrival<'_, L>,
     hit: L::Mask,
 ) -> Surfaces<L> {
     l.vectorize(
         #[inline(always)]
         || {
+            let Arrival {
+                ray,
+                leaving,
+                nearest,
+                ..
+            } = arrival;
             let p = ray.origin.along(ray.direction, nearest.t);
             let parts = &model.parts;
             let gathered = match &parts.small {
@@ -101,7 +109,7 @@ pub fn surfaces<L: Lanes>(
                 emission: gathered.emission,
                 emission_weight: l.real(1.0),
             };
-            others(l, model, ray, nearest, p, has(word::OTHER), &mut out);
+            others(l, model, arrival, (p, has(word::OTHER)), &mut out);
             let mut front = out.normal.dot(ray.direction).lt(l.real(0.0));
             // A chord along the wall is short, and the normals at its ends are rounded.
             let exits = front & leaving.inward & leaving.object.same(out.object);
@@ -111,28 +119,46 @@ pub fn surfaces<L: Lanes>(
             out.front = hit & front;
             out.emits = (has(word::EMITS_FRONT) & front) | (has(word::EMITS_BACK) & !front);
             textures(l, model, has(word::TEXTURED), &mut out);
-            let weighted = out.emits & !arrival.specular & !gathered.light.same(l.int(NO_LIGHT));
-            for_each_distinct(
-                l,
-                gathered.light,
-                weighted,
-                #[inline(always)]
-                |k, here| {
-                    let light = &model.lights[k as usize];
-                    let chosen = l.splat(light.probability)
-                        * light.shape.pdf(l, ray.origin, ray.direction, out.normal);
-                    let weight = power_weight(l, arrival.pdf, chosen);
-                    out.emission_weight = l.select(here, weight, out.emission_weight);
-                },
-            );
+            weights(l, model, arrival, gathered.light, &mut out);
             out
         },
     )
 }
 
+/// Weighs the emission of what light sampling could have found too.
+#[inline(always)]
+fn weights<L: Lanes>(
+    l: L,
+    model: &Model<L::Scalar>,
+    arrival: &Arrival<'_, L>,
+    light: L::Int,
+    out: &mut Surfaces<L>,
+) {
+    let ray = arrival.ray;
+    let weighted = out.emits & !arrival.specular & !light.same(l.int(NO_LIGHT));
+    for_each_distinct(
+        l,
+        light,
+        weighted,
+        #[inline(always)]
+        |k, here| {
+            let light = &model.lights[k as usize];
+            let chosen = l.splat(light.probability)
+                * light.shape.pdf(l, ray.origin, ray.direction, out.normal);
+            let weight = power_weight(l, arrival.pdf, chosen);
+            out.emission_weight = l.select(here, weight, out.emission_weight);
+        },
+    );
+}
+
 /// Calls `f` with each value that occurs in the lanes of `m`, and where it does.
 #[inline(always)]
-fn for_each_distinct<L: Lanes>(l: L, values: L::Int, m: L::Mask, mut f: impl FnMut(u32, L::Mask)) {
+pub fn for_each_distinct<L: Lanes>(
+    l: L,
+    values: L::Int,
+    m: L::Mask,
+    mut f: impl FnMut(u32, L::Mask),
+) {
     let mut pending = m.bits();
     while pending != 0 {
         let value = l.int_lane(values, pending.trailing_zeros() as usize);
@@ -216,13 +242,12 @@ fn one_by_one<L: Lanes>(
 fn others<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
-    ray: &LaneRay<L>,
-    nearest: &Nearest<L>,
-    p: Vec3<L::Real>,
-    m: L::Mask,
+    arrival: &Arrival<'_, L>,
+    (p, m): (Vec3<L::Real>, L::Mask),
     out: &mut Surfaces<L>,
 ) {
     let objects = out.object;
+    let ray = arrival.ray;
     for_each_distinct(
         l,
         objects,
@@ -233,7 +258,7 @@ fn others<L: Lanes>(
             let surface = match shape.kind {
                 Some(kind) => shape.surface(l, kind, p),
                 None => {
-                    let reach = ray.extent + nearest.t;
+                    let reach = ray.extent + arrival.nearest.t;
                     implicit_surface(l, model, k, [p, ray.direction], reach, here)
                 }
             };
@@ -253,15 +278,17 @@ fn textures<L: Lanes>(l: L, model: &Model<L::Scalar>, textured: L::Mask, out: &m
         textured,
         #[inline(always)]
         |k, here| {
-            let [fx, fy, fz] = model.appearances[k as usize].surface.numbers;
-            let cell = inlined(
-                #[inline(always)]
-                |x: L::Real, frequency| (x * l.splat(frequency)).floor(),
-            );
+            let record = &model.appearances[k as usize].surface;
+            let Some(texture) = record.texture else {
+                return;
+            };
+            let [a, b, c] = record.numbers;
+            let numbers = [l.splat(a), l.splat(b), l.splat(c)];
             let local = model.shapes[k as usize].local(l, point);
-            let half = (cell(local.x, fx) + cell(local.y, fy) + cell(local.z, fz)) * l.real(0.5);
-            let odd = here & !half.same(half.floor());
-            out.spectra[0] = l.select_int(odd, out.spectra[1], out.spectra[0]);
+            let chosen = texture.texture(l, numbers, local, out.spectra);
+            for (spectrum, chosen) in out.spectra.iter_mut().zip(chosen) {
+                *spectrum = l.select_int(here, chosen, *spectrum);
+            }
         },
     );
 }

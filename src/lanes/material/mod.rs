@@ -1,41 +1,25 @@
-//! How surfaces scatter light.
+//! How surfaces scatter light: one file a material, and one list of them.
+//!
+//! A path asks in two ways. *Sample*: where does light go that comes from here, and what does it
+//! weigh? *Evaluate*: how much goes from one given direction to another? Geometry is asked for a
+//! packet of lanes at once; spectra have C values a lane, and are handed over lane by lane.
 
+pub mod black;
+pub mod checkerboard;
+pub mod conductor;
+pub mod diffuse;
 pub mod fresnel;
+pub mod glass;
+pub mod interface;
+pub mod kind;
+pub mod mirror;
+pub mod record;
 
-/// The materials.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u32)]
-pub enum MaterialKind {
-    /// Nothing is reflected.
-    Black = 0,
-    /// Lambertian.
-    Diffuse = 1,
-    /// Lambertian, of two albedos.
-    Checkerboard = 2,
-    /// Smooth conductor, Fresnel.
-    Conductor = 3,
-    /// Mirror of constant reflectance.
-    Mirror = 4,
-    /// Smooth dielectric.
-    Glass = 5,
-}
+pub use interface::{Densities, Event, Interface, Medium, Transport, Variates, Wavelengths};
+pub use kind::{Material, MaterialKind, MaterialKinds};
+pub use record::{NUMBERS, Record, SPECTRA, Surface};
 
-/// Most spectra of a material.
-pub const SPECTRA: usize = 2;
-/// Most numbers of a material.
-pub const NUMBERS: usize = 3;
+pub(crate) use kind::each_material;
 
-/// A material's parameters as the loop reads them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Record<T> {
-    /// How it scatters.
-    pub kind: MaterialKind,
-    /// The material that chooses among the spectra by the place, if one does.
-    pub texture: Option<MaterialKind>,
-    /// Where its spectra stand in the bank.
-    pub spectra: [u32; SPECTRA],
-    /// Its numbers.
-    pub numbers: [T; NUMBERS],
-    /// Refraction disperses.
-    pub disperses: bool,
-}
+use crate::math::lanes::Lanes;
+use crate::math::vec3::Vec3;

@@ -12,6 +12,7 @@ pub mod jet;
 pub mod lanes;
 pub mod lookup;
 pub mod number;
+pub mod packet;
 pub mod ray;
 pub mod scalar_lane;
 pub mod twice;

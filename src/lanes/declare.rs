@@ -1,0 +1,159 @@
+//! What a kind of thing is called and which parameters it has, as data in the kind's own file. Scene
+//! files are read, checked and listed by it; it knows nothing of files.
+
+use std::ops::{Bound, RangeBounds};
+
+use crate::spectrum::Spectrum;
+use crate::spectrum::ior::RefractiveIndex;
+
+/// What a spectrum is used as, which decides the values that it may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// Values in [0, 1].
+    Reflectance,
+    /// Values from 0.
+    Emission,
+    /// Real part of a refractive index: values above 0.
+    Index,
+    /// Extinction coefficient: values from 0.
+    Extinction,
+}
+
+/// Allowed numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// From where.
+    pub low: Bound<f64>,
+    /// To where.
+    pub high: Bound<f64>,
+}
+
+impl Range {
+    /// Numbers greater than 0.
+    pub const POSITIVE: Self = Self {
+        low: Bound::Excluded(0.0),
+        high: Bound::Unbounded,
+    };
+
+    /// Whether a number is allowed.
+    pub fn contains(&self, number: f64) -> bool {
+        (self.low, self.high).contains(&number)
+    }
+
+    /// What a message expects.
+    pub fn words(&self) -> String {
+        let low = match self.low {
+            Bound::Included(low) => Some(format!("of at least {low}")),
+            Bound::Excluded(low) => Some(format!("greater than {low}")),
+            Bound::Unbounded => None,
+        };
+        let high = match self.high {
+            Bound::Included(high) => Some(format!("of at most {high}")),
+            Bound::Excluded(high) => Some(format!("less than {high}")),
+            Bound::Unbounded => None,
+        };
+        let ends: Vec<String> = low.into_iter().chain(high).collect();
+        if ends.is_empty() {
+            "a finite number".to_owned()
+        } else {
+            format!("a number {}", ends.join(" and "))
+        }
+    }
+}
+
+/// What a parameter is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Quantity {
+    /// `true`: the key alone says everything.
+    True,
+    /// A number in a unit.
+    Number {
+        /// The unit; empty for plain numbers.
+        unit: &'static str,
+        /// Which numbers are allowed.
+        range: Range,
+    },
+    /// A spectrum.
+    Spectrum(Role),
+    /// Two spectra.
+    TwoSpectra(Role),
+    /// n + ik of a metal: measured and named, or two spectra.
+    Metal,
+    /// n of a transparent medium: measured and named, a number, or a formula.
+    Glass,
+}
+
+impl Quantity {
+    /// As how many spectra the loop reads it.
+    pub const fn spectra(self) -> usize {
+        match self {
+            Self::True | Self::Number { .. } => 0,
+            Self::Spectrum(_) => 1,
+            Self::TwoSpectra(_) | Self::Metal | Self::Glass => 2,
+        }
+    }
+}
+
+/// A key and its value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameter {
+    /// The key.
+    pub key: &'static str,
+    /// What it is, in words.
+    pub what: &'static str,
+    /// The value.
+    pub quantity: Quantity,
+    /// The number, or the same at all wavelengths, that is meant where the key is left out; without
+    /// one, it must be there.
+    pub default: Option<f64>,
+}
+
+/// A kind of thing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Declaration {
+    /// The key that says that something is of this kind, and its value.
+    pub main: Parameter,
+    /// A key in a table that is the value of the main key, whose value is the kind's: kinds that have
+    /// the main key in common differ by it.
+    pub within: Option<&'static str>,
+    /// Parameters beside the main one.
+    pub beside: &'static [Parameter],
+}
+
+impl Declaration {
+    /// A kind whose key says everything.
+    pub const fn new(key: &'static str, what: &'static str, quantity: Quantity) -> Self {
+        Self {
+            main: Parameter {
+                key,
+                what,
+                quantity,
+                default: None,
+            },
+            within: None,
+            beside: &[],
+        }
+    }
+
+    /// As how many spectra the loop reads its parameters.
+    pub const fn spectra(&self) -> usize {
+        let mut count = self.main.quantity.spectra();
+        let mut i = 0;
+        while i < self.beside.len() {
+            count += self.beside[i].quantity.spectra();
+            i += 1;
+        }
+        count
+    }
+}
+
+/// A parameter's value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// Of a [`Quantity::Number`].
+    Number(f64),
+    /// Of a [`Quantity::Spectrum`]; two of [`Quantity::TwoSpectra`].
+    Spectrum(Spectrum),
+    /// Of a [`Quantity::Metal`] or [`Quantity::Glass`].
+    Index(RefractiveIndex),
+}

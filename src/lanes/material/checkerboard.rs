@@ -1,0 +1,85 @@
+//! A checkerboard of two Lambertian surfaces, in cubes of the object's own coordinates.
+
+use glam::DVec3;
+
+use super::diffuse::Diffuse;
+use super::{
+    Densities, Event, Interface, Lanes, Material, MaterialKind, NUMBERS, SPECTRA, Transport,
+    Variates, Vec3,
+};
+use crate::declare::{Declaration, Parameter, Quantity, Range, Role};
+use crate::math::lanes::{Real, inlined};
+
+/// [`Diffuse`], of the first albedo in cells whose numbers sum to an even one, else of the second.
+pub struct Checkerboard;
+
+impl Material for Checkerboard {
+    const KIND: MaterialKind = MaterialKind::Checkerboard;
+    const DECLARATION: Declaration = Declaration {
+        beside: &[Parameter {
+            key: "cell",
+            what: "edge of a cell",
+            quantity: Quantity::Number {
+                unit: "object coordinates",
+                range: Range::POSITIVE,
+            },
+            default: None,
+        }],
+        ..Declaration::new(
+            "checkerboard",
+            "albedos",
+            Quantity::TwoSpectra(Role::Reflectance),
+        )
+    };
+    const WORDS: &'static str = "checkerboard";
+    const BRANCH: Option<&'static str> = Some("checkerboards");
+    const TEXTURE_OF: Option<MaterialKind> = Some(MaterialKind::Diffuse);
+    const SPREAD: bool = true;
+
+    /// Cells per canonical unit along each axis.
+    fn numbers(numbers: &[f64], size: DVec3) -> [f64; NUMBERS] {
+        let [cell, ..] = numbers else {
+            return [0.0; NUMBERS];
+        };
+        size.to_array().map(|length| length / cell)
+    }
+
+    #[inline(always)]
+    fn texture<L: Lanes>(
+        l: L,
+        numbers: [L::Real; NUMBERS],
+        local: Vec3<L::Real>,
+        [even, odd]: [L::Int; SPECTRA],
+    ) -> [L::Int; SPECTRA] {
+        let cell = inlined(
+            #[inline(always)]
+            |x: L::Real, frequency: L::Real| (x * frequency).floor(),
+        );
+        let [fx, fy, fz] = numbers;
+        let half = (cell(local.x, fx) + cell(local.y, fy) + cell(local.z, fz)) * l.real(0.5);
+        [l.select_int(half.same(half.floor()), even, odd), odd]
+    }
+
+    #[inline(always)]
+    fn sample<L: Lanes, const C: usize>(
+        l: L,
+        at: &Interface<'_, L, C>,
+        wo: Vec3<L::Real>,
+        transport: Transport,
+        u: Variates<L>,
+        weigh: impl FnMut(usize, &[L::Scalar; C]),
+    ) -> Event<L> {
+        Diffuse::sample(l, at, wo, transport, u, weigh)
+    }
+
+    #[inline(always)]
+    fn evaluate<L: Lanes, const C: usize>(
+        l: L,
+        at: &Interface<'_, L, C>,
+        directions: [Vec3<L::Real>; 2],
+        transport: Transport,
+        value: impl FnMut(usize, &[L::Scalar; C]),
+    ) -> Densities<L> {
+        Diffuse::evaluate(l, at, directions, transport, value)
+    }
+}

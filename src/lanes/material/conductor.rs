@@ -1,0 +1,48 @@
+//! A smooth metal, on both sides.
+
+use super::interface::unit_again;
+use super::{Event, Interface, Lanes, Material, MaterialKind, Transport, Variates, Vec3};
+use crate::declare::{Declaration, Quantity};
+use crate::math::lanes::Mask;
+use crate::math::packet::{array, each};
+
+/// Reflects by [`conductor`](super::fresnel::conductor).
+pub struct Conductor;
+
+impl Material for Conductor {
+    const KIND: MaterialKind = MaterialKind::Conductor;
+    const DECLARATION: Declaration = Declaration::new("mirror", "metal", Quantity::Metal);
+    const WORDS: &'static str = "metal";
+    const BRANCH: Option<&'static str> = Some("metals");
+    const DELTA: bool = true;
+
+    #[inline(always)]
+    fn sample<L: Lanes, const C: usize>(
+        l: L,
+        at: &Interface<'_, L, C>,
+        wo: Vec3<L::Real>,
+        _: Transport,
+        _: Variates<L>,
+        mut weigh: impl FnMut(usize, &[L::Scalar; C]),
+    ) -> Event<L> {
+        let (cosine, mirrored) = at.mirrored(l, wo);
+        let indices = at.wavelengths.rows(l, at.spectra[0]);
+        let extinctions = at.wavelengths.rows(l, at.spectra[1]);
+        let outside = at.index(l, at.outside);
+        let cosines = array(l, cosine);
+        #[cfg(not(feature = "planted"))]
+        let reflected = super::fresnel::conductor::<L::Scalar>;
+        #[cfg(feature = "planted")]
+        let reflected = crate::planted::reflectance(at.planted);
+        for i in each(at.lanes.bits()) {
+            let (n, k) = (at.values(i, &indices), at.values(i, &extinctions));
+            let around = outside.at(i);
+            let mut reflectance = *n;
+            for c in 0..C {
+                reflectance[c] = reflected(cosines[i], n[c] / around[c], k[c] / around[c]);
+            }
+            weigh(i, &reflectance);
+        }
+        Event::reflection(l, unit_again(l, mirrored))
+    }
+}
