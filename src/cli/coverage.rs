@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use etalon::render::Instructions;
-use etalon::scene::{self, Overrides};
+use etalon::scene::{Overrides, Scene};
 use etalon::study::choice::stem;
 use etalon::study::coverage::{Count, Coverage, SURVEY, Survey, cover};
 use etalon::study::subject::{Subject, SubjectError};
@@ -65,7 +65,7 @@ fn test(arguments: &args::Coverage, path: &Path) -> Result<Vec<(String, Coverage
         set: arguments.set.clone(),
         ..Overrides::default()
     };
-    let [width, height] = scene::load(path, &overrides)?.image.size;
+    let [width, height] = Scene::load_with(path, &overrides)?.image.size;
     let scale = f64::from(arguments.edge) / f64::from(width.max(height));
     let pixels = |n: u32| {
         let scaled = f64::from(n) * scale / f64::from(BLOCK);

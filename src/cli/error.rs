@@ -3,8 +3,8 @@
 use std::io;
 use std::path::PathBuf;
 
+use etalon::PictureError;
 use etalon::compare::CompareError;
-use etalon::film;
 use etalon::plan::PlanError;
 use etalon::render::bins::BinError;
 use etalon::render::memory::TooLarge;
@@ -48,7 +48,7 @@ pub enum CommandError {
     NoVerdict(String),
     /// A picture cannot be written.
     #[error("error: {0}")]
-    Film(#[from] film::Error),
+    Film(#[from] PictureError),
     /// The spectral bins cannot be had.
     #[error("error: --layers spectral: {0}")]
     Bins(#[from] BinError),

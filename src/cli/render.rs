@@ -13,7 +13,7 @@ use etalon::film::{png, whole};
 use etalon::plan::explain;
 use etalon::render::Instructions;
 use etalon::render::goal::{Goal, Target};
-use etalon::scene;
+use etalon::scene::Scene;
 use rayon::ThreadPool;
 
 use super::args::Render;
@@ -50,7 +50,7 @@ fn jobs(arguments: &Render, instructions: Instructions) -> Result<Vec<Job>, Comm
         None => vec![None],
         Some(Panels::Named(name)) => vec![Some(name.clone())],
         Some(Panels::All) => {
-            let names = scene::panel_names(&path.display().to_string(), &scene::read(path)?)?;
+            let names = Scene::panels(path)?;
             if names.is_empty() {
                 return Err(CommandError::NoPanels(path.clone()));
             }

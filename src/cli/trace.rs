@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use etalon::render::trace::{Decided, First, FirstHit, Found, Tracer};
-use etalon::scene;
+use etalon::scene::Scene;
 use rayon::prelude::*;
 
 use super::args::Trace;
@@ -27,7 +27,7 @@ const PIECES: usize = 256;
 
 /// Prints the first hit of each ray.
 pub fn run(arguments: &Trace) -> Result<Answer, CommandError> {
-    let scene = scene::load(&arguments.scene.scene, &arguments.overrides())?;
+    let scene = Scene::load_with(&arguments.scene.scene, &arguments.overrides())?;
     let tracer = Tracer::new(&scene)?;
     let mut lines = Lines::open(&arguments.rays)?;
     let table = lines.heading()?;

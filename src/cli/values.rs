@@ -7,7 +7,6 @@ use std::time::Duration;
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use etalon::render::Instructions;
-use etalon::render::layers;
 use etalon::render::tile::Window;
 use etalon::study::axis::{Axis, AxisError};
 
@@ -122,7 +121,7 @@ impl FromStr for Seconds {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Layer {
     /// About the first visible surface.
-    FirstHit(layers::Layer),
+    FirstHit(etalon::Layer),
     /// Spectral radiance in bins.
     Spectral(Option<SpectralRange>),
 }
@@ -143,10 +142,10 @@ impl FromStr for Layer {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         match text {
-            "depth" => Ok(Self::FirstHit(layers::Layer::Depth)),
-            "normal" => Ok(Self::FirstHit(layers::Layer::Normal)),
-            "object" => Ok(Self::FirstHit(layers::Layer::Object)),
-            "material" => Ok(Self::FirstHit(layers::Layer::Material)),
+            "depth" => Ok(Self::FirstHit(etalon::Layer::Depth)),
+            "normal" => Ok(Self::FirstHit(etalon::Layer::Normal)),
+            "object" => Ok(Self::FirstHit(etalon::Layer::Object)),
+            "material" => Ok(Self::FirstHit(etalon::Layer::Material)),
             "spectral" => Ok(Self::Spectral(None)),
             _ => match text.strip_prefix("spectral:") {
                 Some(range) => range.parse().map(|range| Self::Spectral(Some(range))),
