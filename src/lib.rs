@@ -184,19 +184,17 @@
 //! without them the library stands alone. `serde` lets comparisons be serialised.
 
 #[cfg(feature = "study")]
-pub mod chart;
-pub mod compare;
-pub mod film;
-pub mod plan;
-pub mod render;
-pub mod scene;
-pub mod stats;
+mod chart;
+mod compare;
+mod film;
+mod plan;
+mod render;
+mod scene;
+mod stats;
 #[cfg(feature = "study")]
-pub mod study;
+mod study;
 
-pub use etalon_lanes::{
-    camera, field, integrate, light, material, math, root, sample, shape, spectrum,
-};
+use etalon_lanes::{camera, field, integrate, light, material, math, sample, shape, spectrum};
 
 pub use compare::{
     ChannelJudgement, ChannelMetrics, CompareError, Comparison, Judgement, Metrics, Side,
@@ -217,3 +215,23 @@ pub use render::trace::{First, FirstHit, Found, Singular, Tracer};
 pub use scene::{Diagnostic, Origin, Overrides, Scene, SceneError};
 pub use shape::implicit::certified::Tier;
 pub use stats::Estimate;
+
+/// The rooms, for this repository's own tests, benchmarks and command line. Nothing is promised of
+/// them.
+#[doc(hidden)]
+pub mod inside {
+    macro_rules! rooms {
+        ($($room:ident)*) => {
+            $(pub mod $room {
+                pub use crate::$room::*;
+            })*
+        };
+    }
+    rooms! { compare film plan render scene stats }
+    #[cfg(feature = "study")]
+    rooms! { chart study }
+
+    pub use etalon_lanes::{
+        camera, field, integrate, light, material, math, root, sample, shape, spectrum,
+    };
+}

@@ -5,10 +5,9 @@ mod text;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use etalon::compare::stale::{Freshness, different_scenes, freshness};
-use etalon::compare::{Comparison, Side, write_heatmap};
-use etalon::film::Attribute;
-use etalon::stats::Estimate;
+use etalon::inside::compare::stale::{Freshness, different_scenes, freshness};
+use etalon::inside::compare::write_heatmap;
+use etalon::{Attribute, Comparison, Estimate, Side};
 use serde::Serialize;
 
 use super::Answer;
@@ -190,7 +189,7 @@ fn why_not(a: &Side, b: Option<&Side>) -> String {
 }
 
 /// A difference in standard errors, for people.
-fn score(judged: &etalon::compare::ChannelJudgement) -> f64 {
+fn score(judged: &etalon::inside::compare::ChannelJudgement) -> f64 {
     Estimate {
         value: judged.relative_bias,
         standard_error: judged.standard_error,

@@ -3,14 +3,10 @@
 use std::io;
 use std::path::PathBuf;
 
-use etalon::PictureError;
-use etalon::compare::CompareError;
-use etalon::plan::PlanError;
-use etalon::render::bins::BinError;
-use etalon::render::memory::TooLarge;
-use etalon::render::tile::Outside;
-use etalon::render::trace::Singular;
-use etalon::scene::{Origin, SceneError};
+use etalon::{
+    BinError, CompareError, Origin, Outside, PictureError, PlanError, SceneError, Singular,
+    TooLarge,
+};
 
 use super::trace::RayError;
 

@@ -2,8 +2,8 @@
 
 use std::io::Write as _;
 
-use etalon::plan::{Plan, explain};
-use etalon::scene::Scene;
+use etalon::inside::plan::explain;
+use etalon::{Plan, Scene};
 
 use super::Answer;
 use super::args::Info;

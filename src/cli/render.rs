@@ -9,11 +9,10 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 use std::time::Instant;
 
-use etalon::film::{png, whole};
-use etalon::plan::explain;
-use etalon::render::Instructions;
-use etalon::render::goal::{Goal, Target};
-use etalon::scene::Scene;
+use etalon::inside::film::{png, whole};
+use etalon::inside::plan::explain;
+use etalon::inside::render::Instructions;
+use etalon::{Goal, Scene, Target};
 use rayon::ThreadPool;
 
 use super::args::Render;

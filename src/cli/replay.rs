@@ -2,11 +2,10 @@
 
 use std::io::Write;
 
-use etalon::integrate::chunk::Request;
-use etalon::integrate::replay::{LightVertex, Replayed, Vertex};
-use etalon::plan::Plan;
-use etalon::render::{Instructions, replay};
-use etalon::scene::Scene;
+use etalon::inside::integrate::chunk::Request;
+use etalon::inside::integrate::replay::{LightVertex, Replayed, Vertex};
+use etalon::inside::render::{Instructions, replay};
+use etalon::{Plan, Scene};
 use glam::DVec3;
 
 use super::Answer;

@@ -6,9 +6,9 @@ use std::time::Duration;
 
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use etalon::render::Instructions;
-use etalon::render::tile::Window;
-use etalon::study::axis::{Axis, AxisError};
+use etalon::Window;
+use etalon::inside::render::Instructions;
+use etalon::inside::study::axis::{Axis, AxisError};
 
 /// What is wrong with a value.
 #[derive(Debug, thiserror::Error)]

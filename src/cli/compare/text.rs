@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use etalon::compare::{Judgement, Metrics};
-use etalon::stats::metrics::Metric;
+use etalon::inside::stats::metrics::Metric;
+use etalon::{Judgement, Metrics};
 
 use super::{Report, With, score};
 

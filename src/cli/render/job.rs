@@ -3,11 +3,7 @@
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-use etalon::Instructions;
-use etalon::MOST_SAMPLES;
-use etalon::plan::Plan;
-use etalon::render::bins::BinGrid;
-use etalon::scene::Scene;
+use etalon::{BinGrid, Instructions, MOST_SAMPLES, Plan, Scene};
 
 use super::super::args::Render;
 use super::super::error::CommandError;
