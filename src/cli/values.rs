@@ -141,18 +141,18 @@ impl FromStr for Layer {
     type Err = Expected;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        match text {
-            "depth" => Ok(Self::FirstHit(etalon::Layer::Depth)),
-            "normal" => Ok(Self::FirstHit(etalon::Layer::Normal)),
-            "object" => Ok(Self::FirstHit(etalon::Layer::Object)),
-            "material" => Ok(Self::FirstHit(etalon::Layer::Material)),
-            "spectral" => Ok(Self::Spectral(None)),
-            _ => match text.strip_prefix("spectral:") {
-                Some(range) => range.parse().map(|range| Self::Spectral(Some(range))),
-                None => Err(Expected(
-                    "depth, normal, object, material or spectral[:from-to:step]",
-                )),
-            },
+        let first = etalon::Layer::ALL
+            .into_iter()
+            .find(|(name, _)| *name == text);
+        if let Some((_, layer)) = first {
+            return Ok(Self::FirstHit(layer));
+        }
+        match (text, text.strip_prefix("spectral:")) {
+            ("spectral", _) => Ok(Self::Spectral(None)),
+            (_, Some(range)) => range.parse().map(|range| Self::Spectral(Some(range))),
+            _ => Err(Expected(
+                "depth, normal, object, material or spectral[:from-to:step]",
+            )),
         }
     }
 }
