@@ -9,7 +9,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use etalon::film::{Attribute, Picture, Values, exr, names};
+use etalon::inside::film::{exr, names};
+use etalon::{Attribute, Picture, Values};
 use tempfile::TempDir;
 
 /// A checkered floor, a glass ball, a mirror, a lamp and a dim sky: every kind of path.

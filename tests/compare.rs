@@ -8,11 +8,12 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-use etalon::compare::{LEVEL, Side, flip, judge};
-use etalon::film::provenance::hash;
-use etalon::film::spectral::channel_name;
-use etalon::film::{Attribute, Channel, Picture, exr, names};
-use etalon::stats::student;
+use etalon::inside::compare::{LEVEL, flip, judge};
+use etalon::inside::film::provenance::hash;
+use etalon::inside::film::spectral::channel_name;
+use etalon::inside::film::{exr, names};
+use etalon::inside::stats::student;
+use etalon::{Attribute, Channel, Picture, Side};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::Value;

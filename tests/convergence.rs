@@ -10,12 +10,10 @@
 
 use std::path::Path;
 
-use etalon::compare::Side;
-use etalon::render::bins::BinGrid;
-use etalon::scene::{Overrides, SamplerKind, load};
-use etalon::stats::Estimate;
-use etalon::stats::family::sidak;
-use etalon::study::agreement::Case;
+use etalon::inside::scene::{SamplerKind, load};
+use etalon::inside::stats::family::sidak;
+use etalon::inside::study::agreement::Case;
+use etalon::{BinGrid, Estimate, Overrides, Side};
 use rayon::prelude::*;
 
 /// Probability of any false alarm here.

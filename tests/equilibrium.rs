@@ -10,11 +10,10 @@
 
 use std::path::Path;
 
-use etalon::plan::Plan;
-use etalon::render::{Request, Unwatched, render};
-use etalon::scene::{self, Overrides, Scene};
-use etalon::stats::Estimate;
-use etalon::stats::family::sidak;
+use etalon::inside::render::{Request, Unwatched, render};
+use etalon::inside::scene;
+use etalon::inside::stats::family::sidak;
+use etalon::{Estimate, Overrides, Plan, Scene};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 

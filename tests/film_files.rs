@@ -8,9 +8,10 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::Path;
 
-use etalon::film::provenance::{self, Provenance};
-use etalon::film::spectral::{self, Bin};
-use etalon::film::{Attribute, Channel, Error, Picture, Values, exr, names, png, whole};
+use etalon::inside::film::provenance::{self, Provenance};
+use etalon::inside::film::spectral::{self, Bin};
+use etalon::inside::film::{Error, exr, names, png, whole};
+use etalon::{Attribute, Channel, Picture, Values};
 use tempfile::{TempDir, tempdir};
 
 /// 19 × 37 pixels: neither is a multiple of ZIP's 16 lines, so that the last block is short.

@@ -1,8 +1,8 @@
 //! Fresnel reflectances against published formulas, over both kinds of interface and to the edges.
 
-use etalon::light::LightShape;
-use etalon::material::fresnel::{conductor, dielectric, dielectric_reflectance};
-use etalon::math::lanes::Lanes;
+use etalon::inside::light::LightShape;
+use etalon::inside::material::fresnel::{conductor, dielectric, dielectric_reflectance};
+use etalon::inside::math::lanes::Lanes;
 
 use crate::lanes_support::{Kernel, PRECISIONS, Precision, map_everywhere};
 use crate::truth_file::{list, number, truth};

@@ -7,10 +7,11 @@
 
 use std::path::Path;
 
-use etalon::integrate::chunk;
-use etalon::plan::{Plan, explain};
-use etalon::render::{Instructions, Request, Unwatched, render, replay};
-use etalon::scene::{Overrides, parse};
+use etalon::inside::integrate::chunk;
+use etalon::inside::plan::explain;
+use etalon::inside::render::{Instructions, Request, Unwatched, render, replay};
+use etalon::inside::scene::parse;
+use etalon::{Overrides, Plan};
 use glam::DVec3;
 
 fn plan(text: &str) -> (Plan, [u32; 2]) {

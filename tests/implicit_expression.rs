@@ -3,14 +3,15 @@
 
 use std::path::Path;
 
-use etalon::field::expression::{
+use etalon::inside::field::expression::{
     DEEPEST, LONGEST, MOST_BITS, MOST_EXPONENT, MOST_OPERATIONS, Parameter, Problem, check_name,
     parse, parse_constant, rational,
 };
-use etalon::field::named::{self, SURFACES};
-use etalon::field::polynomial::{MOST_DEGREE, Polynomial};
-use etalon::field::tape::{Algebra, Binary, Operation, Tape, Unary};
-use etalon::scene::{self, Diagnostic, FinderChoice, Implicit, Origin, Overrides, Shape};
+use etalon::inside::field::named::{self, SURFACES};
+use etalon::inside::field::polynomial::{MOST_DEGREE, Polynomial};
+use etalon::inside::field::tape::{Algebra, Binary, Operation, Tape, Unary};
+use etalon::inside::scene::{self, FinderChoice, Implicit, Shape};
+use etalon::{Diagnostic, Origin, Overrides};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};

@@ -3,19 +3,19 @@
 
 use std::sync::Arc;
 
-use etalon::field::bounded;
-use etalon::field::evaluate::{Field, nearest};
-use etalon::field::expression::{Expression, parse};
-use etalon::field::lanes::{LaneField, Scratch};
-use etalon::field::named::{self, SURFACES};
-use etalon::field::normal::outward;
-use etalon::math::affine::Affine;
-use etalon::math::lanes::Lanes;
-use etalon::math::vec3::Vec3;
-use etalon::scene::{FinderChoice, Implicit};
-use etalon::shape::implicit::certified::Workspace;
-use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
-use etalon::shape::{Query, Ray};
+use etalon::inside::field::bounded;
+use etalon::inside::field::evaluate::{Field, nearest};
+use etalon::inside::field::expression::{Expression, parse};
+use etalon::inside::field::lanes::{LaneField, Scratch};
+use etalon::inside::field::named::{self, SURFACES};
+use etalon::inside::field::normal::outward;
+use etalon::inside::math::affine::Affine;
+use etalon::inside::math::lanes::Lanes;
+use etalon::inside::math::vec3::Vec3;
+use etalon::inside::scene::{FinderChoice, Implicit};
+use etalon::inside::shape::implicit::certified::Workspace;
+use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
+use etalon::inside::shape::{Query, Ray};
 use glam::DVec3;
 use num_bigint::BigInt;
 use num_rational::BigRational;

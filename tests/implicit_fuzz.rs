@@ -9,13 +9,13 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use etalon::field::evaluate::Field;
-use etalon::field::expression::parse;
-use etalon::math::affine::Affine;
-use etalon::scene::{FinderChoice, Implicit};
-use etalon::shape::implicit::certified::Workspace;
-use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
-use etalon::shape::{Query, Ray};
+use etalon::inside::field::evaluate::Field;
+use etalon::inside::field::expression::parse;
+use etalon::inside::math::affine::Affine;
+use etalon::inside::scene::{FinderChoice, Implicit};
+use etalon::inside::shape::implicit::certified::Workspace;
+use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
+use etalon::inside::shape::{Query, Ray};
 use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;

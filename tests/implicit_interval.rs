@@ -7,15 +7,15 @@
 
 use std::collections::HashMap;
 
-use etalon::field::expression::parse;
-use etalon::field::over_box::over_box;
-use etalon::math::affine::Affine;
-use etalon::math::instructions::Instructions;
-use etalon::root::Outcome;
-use etalon::root::interval::{Enclosed, PIECES, Pieces, first_zero};
-use etalon::shape::Ray;
-use etalon::shape::implicit::enclosed::{EnclosedField, Method, Searching};
-use etalon::shape::ladder::{Ladder, ScaledRay};
+use etalon::Instructions;
+use etalon::inside::field::expression::parse;
+use etalon::inside::field::over_box::over_box;
+use etalon::inside::math::affine::Affine;
+use etalon::inside::root::Outcome;
+use etalon::inside::root::interval::{Enclosed, PIECES, Pieces, first_zero};
+use etalon::inside::shape::Ray;
+use etalon::inside::shape::implicit::enclosed::{EnclosedField, Method, Searching};
+use etalon::inside::shape::ladder::{Ladder, ScaledRay};
 use glam::DVec3;
 
 use crate::oracle_support::{self, IMPLICIT, OracleShape, number, shapes, vector};

@@ -7,10 +7,10 @@
     reason = "chosen numbers are finite and fields are polynomials"
 )]
 
-use etalon::field::tape::{Binary, Operation, Tape};
-use etalon::math::affine::Affine;
-use etalon::math::instructions::Instructions;
-use etalon::shape::implicit::certified::{Answers, Certified, Packet, Tier, Wish, Workspace};
+use etalon::inside::field::tape::{Binary, Operation, Tape};
+use etalon::inside::math::affine::Affine;
+use etalon::inside::shape::implicit::certified::{Answers, Certified, Packet, Wish, Workspace};
+use etalon::{Instructions, Tier};
 use glam::DVec3;
 use num_bigint::BigInt;
 use num_rational::BigRational;

@@ -10,15 +10,17 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use etalon::field::normal::SHARP;
-use etalon::math::affine::Affine;
-use etalon::math::instructions::Instructions;
-use etalon::scene::{FinderChoice, Implicit};
-use etalon::shape::implicit::certified::{
-    Answers, Certified, Packet, Tier, WIDTH, Wish, Workspace,
+use etalon::inside::field::normal::SHARP;
+use etalon::inside::math::affine::Affine;
+use etalon::inside::scene::{FinderChoice, Implicit};
+use etalon::inside::shape::implicit::certified::{
+    Answers, Certified, Packet, WIDTH, Wish, Workspace,
 };
-use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitHit, ImplicitTally, PlacedImplicit};
-use etalon::shape::{Query, Ray};
+use etalon::inside::shape::implicit::placed::{
+    ImplicitAnswer, ImplicitHit, ImplicitTally, PlacedImplicit,
+};
+use etalon::inside::shape::{Query, Ray};
+use etalon::{Instructions, Tier};
 
 use crate::oracle_support::{IMPLICIT, OracleShape, Row, number, rows, shapes, vector};
 

@@ -3,9 +3,9 @@
 
 use std::f64::consts::TAU;
 
-use etalon::math::functions::{atan2_turns, ln, sin_cos_turns};
-use etalon::math::lanes::{Int, Lanes, Mask, Real, Scalar};
-use etalon::math::vec3::Vec3;
+use etalon::inside::math::functions::{atan2_turns, ln, sin_cos_turns};
+use etalon::inside::math::lanes::{Int, Lanes, Mask, Real, Scalar};
+use etalon::inside::math::vec3::Vec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 

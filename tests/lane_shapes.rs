@@ -8,11 +8,11 @@
 
 use std::collections::HashMap;
 
-use etalon::math::affine::Affine;
-use etalon::math::lanes::{Lanes, Mask, Scalar};
-use etalon::math::vec3::Vec3;
-use etalon::shape::lanes::{LaneRay, LaneShape};
-use etalon::shape::{Placed, Ray, ShapeKind, Tally};
+use etalon::inside::math::affine::Affine;
+use etalon::inside::math::lanes::{Lanes, Mask, Scalar};
+use etalon::inside::math::vec3::Vec3;
+use etalon::inside::shape::lanes::{LaneRay, LaneShape};
+use etalon::inside::shape::{Placed, Ray, ShapeKind, Tally};
 use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;

@@ -1,9 +1,10 @@
 //! Running code over lanes: on the best instruction set, or on all of them with the bits compared.
 
-use etalon::math::instructions::{self, Instructions};
-use etalon::math::lanes::{Lanes, Scalar};
+use etalon::Instructions;
+use etalon::inside::math::instructions;
+use etalon::inside::math::lanes::{Lanes, Scalar};
 
-pub use etalon::math::instructions::Precision;
+pub use etalon::inside::math::instructions::Precision;
 
 pub const PRECISIONS: [Precision; 2] = Precision::ALL;
 

@@ -8,11 +8,11 @@
 
 use std::f64::consts::PI;
 
-use etalon::light::{
+use etalon::inside::light::{
     CubeLight, CylinderLight, LightShape, MappedLight, PlanarLight, RectangleLight, SphereLight,
 };
-use etalon::math::lanes::{Lanes, Mask, Scalar};
-use etalon::math::vec3::Vec3;
+use etalon::inside::math::lanes::{Lanes, Mask, Scalar};
+use etalon::inside::math::vec3::Vec3;
 use glam::{DMat3, DVec3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -20,7 +20,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::lanes_support::{Job, PRECISIONS, Precision, best, on_each, same_bits};
 use crate::statistics_support::{chi_square, t_test};
 use crate::truth_file::truth;
-use etalon::stats::family::sidak;
+use etalon::inside::stats::family::sidak;
 
 /// Level of all random tests of this module together.
 const FAMILY: f64 = 1e-4;

@@ -8,11 +8,10 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use etalon::plan::Plan;
-use etalon::render::trace::{First, Tracer};
-use etalon::render::{Request, Unwatched, render};
-use etalon::scene::{self, Overrides, Scene};
-use etalon::shape::Ray;
+use etalon::inside::render::{Request, Unwatched, render};
+use etalon::inside::scene;
+use etalon::inside::shape::Ray;
+use etalon::{First, Overrides, Plan, Scene, Tracer};
 use glam::DVec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;

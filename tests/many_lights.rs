@@ -7,10 +7,10 @@
 
 use std::path::Path;
 
-use etalon::plan::{Plan, Tables};
-use etalon::render::{Request, Unwatched, render};
-use etalon::scene::{self, Overrides, Scene};
-use etalon::stats::Estimate;
+use etalon::inside::plan::Tables;
+use etalon::inside::render::{Request, Unwatched, render};
+use etalon::inside::scene;
+use etalon::{Estimate, Overrides, Plan, Scene};
 
 /// A floor under a lamp of 2 × 2 in so many tiles to a side, a third of which shine four times as
 /// bright: how the lamp is cut decides how many lights there are to choose from.

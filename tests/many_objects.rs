@@ -7,19 +7,20 @@
 
 use std::path::Path;
 
-use etalon::integrate::intersect::{Leaving, NOTHING, Rungs, Shadow, nearest, occluded};
-use etalon::integrate::model::{Many, Model};
-use etalon::math::lanes::{Lanes, Mask, Scalar, WIDEST};
-use etalon::math::twice::Twice;
-use etalon::math::vec3::Vec3;
-use etalon::plan::build::{LARGEST_LIST, build};
-use etalon::plan::choose::choose;
-use etalon::plan::extent::{about_camera, bounds};
-use etalon::scene::{self, Overrides, Scene};
-use etalon::shape::hierarchy::Item;
-use etalon::shape::lanes::LaneRay;
-use etalon::shape::lanes::balls::Balls;
-use etalon::spectrum::grid::WavelengthGrid;
+use etalon::inside::integrate::intersect::{Leaving, NOTHING, Rungs, Shadow, nearest, occluded};
+use etalon::inside::integrate::model::{Many, Model};
+use etalon::inside::math::lanes::{Lanes, Mask, Scalar, WIDEST};
+use etalon::inside::math::twice::Twice;
+use etalon::inside::math::vec3::Vec3;
+use etalon::inside::plan::build::{LARGEST_LIST, build};
+use etalon::inside::plan::choose::choose;
+use etalon::inside::plan::extent::{about_camera, bounds};
+use etalon::inside::scene;
+use etalon::inside::shape::hierarchy::Item;
+use etalon::inside::shape::lanes::LaneRay;
+use etalon::inside::shape::lanes::balls::Balls;
+use etalon::inside::spectrum::grid::WavelengthGrid;
+use etalon::{Overrides, Scene};
 use glam::DVec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;

@@ -1,6 +1,6 @@
 //! The error metrics on pixels few enough to work out by hand.
 
-use etalon::stats::metrics::{
+use etalon::inside::stats::metrics::{
     Metric, mean_error, mean_over_channels, mse, relative_mean_error, relmse, rmse, smape,
 };
 

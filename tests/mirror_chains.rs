@@ -12,17 +12,18 @@
 
 use std::path::Path;
 
-use etalon::integrate::bounce::{Places, bounce};
-use etalon::integrate::chunk::Workspace;
-use etalon::integrate::intersect::NOTHING;
-use etalon::integrate::model::Model;
-use etalon::integrate::pool::{IntField, RealField, flags};
-use etalon::math::affine::Affine;
-use etalon::math::lanes::{Lanes, Scalar};
-use etalon::plan::choose::Precision;
-use etalon::plan::{Plan, Tables};
-use etalon::scene::{Overrides, parse};
-use etalon::shape::{Placed, Ray, ShapeKind, Start, Tally};
+use etalon::inside::integrate::bounce::{Places, bounce};
+use etalon::inside::integrate::chunk::Workspace;
+use etalon::inside::integrate::intersect::NOTHING;
+use etalon::inside::integrate::model::Model;
+use etalon::inside::integrate::pool::{IntField, RealField, flags};
+use etalon::inside::math::affine::Affine;
+use etalon::inside::math::lanes::{Lanes, Scalar};
+use etalon::inside::plan::Tables;
+use etalon::inside::plan::choose::Precision;
+use etalon::inside::scene::parse;
+use etalon::inside::shape::{Placed, Ray, ShapeKind, Start, Tally};
+use etalon::{Overrides, Plan};
 
 use crate::oracle_support::{Row, number, rows, vector};
 

@@ -7,12 +7,13 @@
 
 use std::path::Path;
 
-use etalon::integrate::list::List;
-use etalon::integrate::model::Model;
-use etalon::math::lanes::Scalar;
-use etalon::plan::{Plan, Tables};
-use etalon::render::{Request, Unwatched, render};
-use etalon::scene::{self, Overrides, Scene};
+use etalon::inside::integrate::list::List;
+use etalon::inside::integrate::model::Model;
+use etalon::inside::math::lanes::Scalar;
+use etalon::inside::plan::Tables;
+use etalon::inside::render::{Request, Unwatched, render};
+use etalon::inside::scene;
+use etalon::{Overrides, Plan, Scene};
 
 /// A room whose walls have everything on one side, with a lamp below its ceiling; objects 0 to 3.
 const ROOM: &str = r#"

@@ -10,8 +10,8 @@
 
 use std::collections::HashMap;
 
-use etalon::math::affine::Affine;
-use etalon::shape::{Placed, Ray, ShapeKind, Start, Tally};
+use etalon::inside::math::affine::Affine;
+use etalon::inside::shape::{Placed, Ray, ShapeKind, Start, Tally};
 
 use crate::oracle_support::{number, rows, vector};
 

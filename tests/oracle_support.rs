@@ -8,7 +8,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use etalon::field::expression::{Expression, Parameter, parse, rational};
+use etalon::inside::field::expression::{Expression, Parameter, parse, rational};
 use glam::DVec3;
 
 /// Rays with implicit surfaces: every number is meant exactly, t to 22 digits.

@@ -8,12 +8,11 @@
 
 use std::path::PathBuf;
 
-use etalon::render::goal::{Goal, Target, choose, reached};
-use etalon::render::{Instructions, Rendered, Unwatched};
-use etalon::scene::Overrides;
-use etalon::stats::Estimate;
-use etalon::study::coverage::{Coverage, Survey, cover};
-use etalon::study::subject::{Ready, Subject};
+use etalon::inside::render::goal::{choose, reached};
+use etalon::inside::render::{Instructions, Unwatched};
+use etalon::inside::study::coverage::{Coverage, Survey, cover};
+use etalon::inside::study::subject::{Ready, Subject};
+use etalon::{Estimate, Goal, Overrides, Rendered, Target};
 use tempfile::TempDir;
 
 use crate::statistics_support::moments;
@@ -152,7 +151,7 @@ fn true_worst_block(ready: &mut Ready, samples: u32) -> f64 {
     let mut sums: Vec<f64> = Vec::new();
     for run in 0..MANY {
         let rendered = render(ready, (1 << 40) + run, samples);
-        let blocks = etalon::render::blocks::luminances(&rendered);
+        let blocks = etalon::inside::render::blocks::luminances(&rendered);
         sums.resize(blocks.len(), 0.0);
         for (sum, block) in sums.iter_mut().zip(&blocks) {
             let relative = block.standard_error / block.value.max(f64::MIN_POSITIVE);

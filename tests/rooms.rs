@@ -95,7 +95,9 @@ fn uses(table: &Table) -> Table {
             .unwrap_or_else(|| panic!("the room {room} has no folder"));
         let mut files = Vec::new();
         rust_files(&folder, &mut files);
-        let code = files.iter().map(|file| std::fs::read_to_string(file).unwrap());
+        let code = files
+            .iter()
+            .map(|file| std::fs::read_to_string(file).unwrap());
         (room.clone(), code.flat_map(|code| used(&code)).collect())
     };
     table.keys().map(of_room).collect()

@@ -8,19 +8,19 @@
 
 use std::f64::consts::{PI, TAU};
 
-use etalon::film::pixels::Pixels;
-use etalon::math::lanes::{Lanes, Scalar};
-use etalon::sample::Slot;
-use etalon::sample::mis::power_weight;
-use etalon::sample::permute::permute;
-use etalon::sample::replicates::Replicates;
-use etalon::sample::sequence::{Identity, Sequence};
-use etalon::sample::sobol::nested_scramble;
-use etalon::sample::warp::{
+use etalon::inside::film::pixels::Pixels;
+use etalon::inside::math::lanes::{Lanes, Scalar};
+use etalon::inside::sample::Slot;
+use etalon::inside::sample::mis::power_weight;
+use etalon::inside::sample::permute::permute;
+use etalon::inside::sample::replicates::Replicates;
+use etalon::inside::sample::sequence::{Identity, Sequence};
+use etalon::inside::sample::sobol::nested_scramble;
+use etalon::inside::sample::warp::{
     cosine_hemisphere, cosine_hemisphere_pdf, square_to_disk, uniform_sphere,
 };
-use etalon::scene::SamplerKind;
-use etalon::stats::family::sidak;
+use etalon::inside::scene::SamplerKind;
+use etalon::inside::stats::family::sidak;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 

@@ -6,15 +6,13 @@
 
 use std::path::Path;
 
-use etalon::declare::Value;
-use etalon::material::MaterialKind;
-use etalon::math::affine::Affine;
-use etalon::scene::{
-    self, Diagnostic, Light, Origin, Overrides, Projection, Scene, SceneError, Shape, Sides,
-    Surface,
-};
-use etalon::spectrum::Spectrum;
-use etalon::spectrum::ior::{RefractiveIndex, glass_names, metal_names, named_metal};
+use etalon::inside::declare::Value;
+use etalon::inside::material::MaterialKind;
+use etalon::inside::math::affine::Affine;
+use etalon::inside::scene::{self, Light, Projection, Shape, Sides, Surface};
+use etalon::inside::spectrum::Spectrum;
+use etalon::inside::spectrum::ior::{RefractiveIndex, glass_names, metal_names, named_metal};
+use etalon::{Diagnostic, Origin, Overrides, Scene, SceneError};
 use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;

@@ -7,13 +7,13 @@
 
 use std::cmp::Ordering;
 
-use etalon::math::affine::Affine;
-use etalon::math::double_double::DoubleDouble;
-use etalon::math::exact::Exact;
-use etalon::math::number::{Bounded, Number};
-use etalon::shape::ladder::{Question, ScaledRay};
-use etalon::shape::question::{First, Limits, Through};
-use etalon::shape::{Placed, Ray, ShapeKind, SingularMatrix, Start, Tally};
+use etalon::inside::math::affine::Affine;
+use etalon::inside::math::double_double::DoubleDouble;
+use etalon::inside::math::exact::Exact;
+use etalon::inside::math::number::{Bounded, Number};
+use etalon::inside::shape::ladder::{Question, ScaledRay};
+use etalon::inside::shape::question::{First, Limits, Through};
+use etalon::inside::shape::{Placed, Ray, ShapeKind, SingularMatrix, Start, Tally};
 use glam::{DMat3, DQuat, DVec3};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;

@@ -5,7 +5,7 @@
     reason = "the tests' own scenes are hit by construction"
 )]
 
-use etalon::shape::{Placed, Query, Ray, Rung, ShapeKind, Start, Tally, nearest, occluded};
+use etalon::inside::shape::{Placed, Query, Ray, Rung, ShapeKind, Start, Tally, nearest, occluded};
 use glam::DVec3;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;

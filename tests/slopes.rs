@@ -8,11 +8,11 @@
 
 use std::path::Path;
 
-use etalon::plan::Plan;
-use etalon::render::{Request, Unwatched, render};
-use etalon::sample::Slot;
-use etalon::scene::{Overrides, SamplerKind, parse};
-use etalon::stats::slope::{Replicates, Slope};
+use etalon::inside::render::{Request, Unwatched, render};
+use etalon::inside::sample::Slot;
+use etalon::inside::scene::{SamplerKind, parse};
+use etalon::inside::stats::slope::{Replicates, Slope};
+use etalon::{Overrides, Plan};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 

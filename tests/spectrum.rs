@@ -5,15 +5,17 @@
     reason = "a failed unwrap is a failed test, and says where"
 )]
 
-use etalon::spectrum::cells::means;
-use etalon::spectrum::ior::{RefractiveIndex, glass_names, metal_names, named_glass, named_metal};
-use etalon::spectrum::observer::{
+use etalon::inside::spectrum::cells::means;
+use etalon::inside::spectrum::ior::{
+    RefractiveIndex, glass_names, metal_names, named_glass, named_metal,
+};
+use etalon::inside::spectrum::observer::{
     LUMINOUS_EFFICACY, REC_709, XYZ_TO_LINEAR_SRGB, Y_INTEGRAL, spectrum_to_xyz, xyz_bar,
     xyz_to_linear_srgb, xyz_to_rgb_from_chromaticities,
 };
-use etalon::spectrum::rgb::{fit_emission, fit_reflectance};
-use etalon::spectrum::wavelengths::{WavelengthPdf, hero_relative_variance};
-use etalon::spectrum::{NM_MAX, NM_MIN, RgbError, Spectrum, Table, TableError, illuminant};
+use etalon::inside::spectrum::rgb::{fit_emission, fit_reflectance};
+use etalon::inside::spectrum::wavelengths::{WavelengthPdf, hero_relative_variance};
+use etalon::inside::spectrum::{NM_MAX, NM_MIN, RgbError, Spectrum, Table, TableError, illuminant};
 use serde_json::Value;
 
 /// Fraunhofer lines d, F and C in nm.

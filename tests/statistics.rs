@@ -5,10 +5,11 @@
     reason = "a failed unwrap is a failed test, and says where"
 )]
 
-use etalon::stats::family::{holm, sidak};
-use etalon::stats::uniformity::anderson_darling;
-use etalon::stats::verdict::{POWER, Verdict, judge, smallest_caught};
-use etalon::stats::{Estimate, student};
+use etalon::Estimate;
+use etalon::inside::stats::family::{holm, sidak};
+use etalon::inside::stats::student;
+use etalon::inside::stats::uniformity::anderson_darling;
+use etalon::inside::stats::verdict::{POWER, Verdict, judge, smallest_caught};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use statrs::distribution::{ContinuousCDF, Normal};

@@ -1,6 +1,7 @@
 //! Tests of hypotheses with stated levels.
 
-use etalon::stats::{Estimate, student};
+use etalon::Estimate;
+use etalon::inside::stats::student;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// p-value of Pearson's χ² of counts against expected counts. Neighbouring bins are joined until

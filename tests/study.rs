@@ -8,10 +8,11 @@
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use etalon::chart::row::{self, Row};
-use etalon::chart::{Key, curves};
-use etalon::film::{Attribute, Picture, exr, provenance};
-use etalon::study::axis::Axis;
+use etalon::inside::chart::row::{self, Row};
+use etalon::inside::chart::{Key, curves};
+use etalon::inside::film::{exr, provenance};
+use etalon::inside::study::axis::Axis;
+use etalon::{Attribute, Picture};
 use tempfile::TempDir;
 
 /// A closed ball that glows and reflects half of what falls on it, seen from inside: 0.5/(1 − 0.5).

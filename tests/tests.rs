@@ -7,6 +7,7 @@ mod convergence;
 mod equilibrium;
 mod film_files;
 mod fresnel;
+mod front_door;
 mod implicit_afar;
 mod implicit_expression;
 mod implicit_field;

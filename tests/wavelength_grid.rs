@@ -6,14 +6,14 @@
     reason = "the tests' own tables are right, and a panic says where"
 )]
 
-use etalon::integrate::develop::Spectrometer;
-use etalon::integrate::pool::Rows;
-use etalon::math::lanes::Scalar;
-use etalon::spectrum::cells::means;
-use etalon::spectrum::grid::{CELLS, SpectrumBank, WavelengthGrid};
+use etalon::inside::integrate::develop::Spectrometer;
+use etalon::inside::integrate::pool::Rows;
+use etalon::inside::math::lanes::Scalar;
+use etalon::inside::spectrum::cells::means;
+use etalon::inside::spectrum::grid::{CELLS, SpectrumBank, WavelengthGrid};
 
-use etalon::spectrum::wavelengths::WavelengthPdf;
-use etalon::spectrum::{Spectrum, Table};
+use etalon::inside::spectrum::wavelengths::WavelengthPdf;
+use etalon::inside::spectrum::{Spectrum, Table};
 
 use crate::truth_file::{list, number, truth};
 
@@ -178,8 +178,9 @@ fn the_equal_energy_spectrum_has_luminance_one() {
         let ([x, y, z], _) = flat::<T, C>();
         assert!((y - 1.0).abs() < bound, "{C}: {y}");
         // The 1 nm table's own white: X and Z of the equal-energy spectrum.
-        let white =
-            etalon::spectrum::observer::spectrum_to_xyz(&etalon::spectrum::Spectrum::Constant(1.0));
+        let white = etalon::inside::spectrum::observer::spectrum_to_xyz(
+            &etalon::inside::spectrum::Spectrum::Constant(1.0),
+        );
         assert!(
             (x - white[0]).abs() < bound && (z - white[2]).abs() < bound,
             "{C}: {x} {z}"

@@ -4,11 +4,11 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use etalon::chart::figures::USUAL_ERROR;
-use etalon::render::Instructions;
-use etalon::scene::Overrides;
-use etalon::study::axis::Axis;
-use etalon::study::choice::Choice;
+use etalon::Overrides;
+use etalon::inside::chart::figures::USUAL_ERROR;
+use etalon::inside::render::Instructions;
+use etalon::inside::study::axis::Axis;
+use etalon::inside::study::choice::Choice;
 
 use super::values::{
     Crop, GoalTarget, Layer, Panels, Pixel, PlanChoice, Seconds, Size, axis, finite, instructions,

@@ -1,6 +1,6 @@
 //! `etalon chart`: several studies in one picture of speed and accuracy.
 
-use etalon::chart::{Key, curves, figures, row};
+use etalon::inside::chart::{Key, curves, figures, row};
 
 use super::args;
 use super::error::CommandError;

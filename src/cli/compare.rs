@@ -5,14 +5,9 @@ mod text;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use etalon::compare::stale::{Freshness, different_scenes, freshness};
-use etalon::compare::{
-    ChannelMetrics, Judgement, LEVEL, Metrics, Side, against_truth, flip, judge, metrics,
-    write_heatmap,
-};
-use etalon::film::Attribute;
-use etalon::stats::Estimate;
-use etalon::stats::metrics::Metric;
+use etalon::inside::compare::stale::{Freshness, different_scenes, freshness};
+use etalon::inside::compare::write_heatmap;
+use etalon::{Attribute, Comparison, Estimate, Side};
 use serde::Serialize;
 
 use super::Answer;
@@ -29,14 +24,9 @@ struct Report {
     with: With,
     /// Width and height in pixels.
     size: [usize; 2],
-    /// The metrics by channel; none against a number.
-    channels: Vec<ChannelMetrics>,
-    /// The metrics of R, G and B together.
-    rgb: Option<Metrics>,
-    /// HDR-FLIP of B and A, the mean over the pixels.
-    flip: Option<Metric>,
-    /// The verdict, where variances are known.
-    judgement: Option<Judgement>,
+    /// The metrics and the verdict.
+    #[serde(flatten)]
+    comparison: Comparison,
     /// The relative difference at the ends of the heat map's scale.
     heatmap_scale: Option<f64>,
     /// What should be known besides.
@@ -76,7 +66,7 @@ pub fn run(arguments: &Compare) -> Result<Answer, CommandError> {
     writeln!(output, "{}", said.trim_end())
         .and_then(|()| output.flush())
         .map_err(CommandError::Output)?;
-    match &report.judgement {
+    match &report.comparison.judgement {
         Some(judgement) if judgement.consistent => Ok(Answer::Good),
         Some(_) => Ok(Answer::No),
         None => Err(CommandError::NoVerdict(why_not(&a, b.as_ref()))),
@@ -84,7 +74,7 @@ pub fn run(arguments: &Compare) -> Result<Answer, CommandError> {
 }
 
 fn with_picture(arguments: &Compare, a: &Side, b: &Side) -> Result<Report, CommandError> {
-    let (channels, rgb) = metrics(a, b)?;
+    let comparison = Comparison::of_sides(a, b)?;
     let mut notes = Vec::new();
     let stale = [a, b].map(stale);
     if let Some(difference) = different_scenes(a, b) {
@@ -104,18 +94,11 @@ fn with_picture(arguments: &Compare, a: &Side, b: &Side) -> Result<Report, Comma
     if arguments.heatmap.is_some() && heatmap_scale.is_none() {
         notes.push("no heat map: a picture has no R, G, B".to_owned());
     }
-    let flip = match (a.rgb(), b.rgb()) {
-        (Some(own), Some(reference)) => Some(Metric::mean(&flip(&reference, &own, a.width))),
-        _ => None,
-    };
     Ok(Report {
         a: a.path.clone(),
         with: With::B(b.path.clone()),
         size: [a.width, a.height],
-        channels,
-        rgb,
-        flip,
-        judgement: judge(a, b, LEVEL),
+        comparison,
         heatmap_scale,
         notes,
     })
@@ -126,10 +109,7 @@ fn with_number(a: &Side, truth: f64) -> Report {
         a: a.path.clone(),
         with: With::Truth(truth),
         size: [a.width, a.height],
-        channels: Vec::new(),
-        rgb: None,
-        flip: None,
-        judgement: against_truth(a, truth, LEVEL),
+        comparison: Comparison::with_truth(a, truth),
         heatmap_scale: None,
         notes: stale(a).into_iter().collect(),
     }
@@ -209,7 +189,7 @@ fn why_not(a: &Side, b: Option<&Side>) -> String {
 }
 
 /// A difference in standard errors, for people.
-fn score(judged: &etalon::compare::ChannelJudgement) -> f64 {
+fn score(judged: &etalon::inside::compare::ChannelJudgement) -> f64 {
     Estimate {
         value: judged.relative_bias,
         standard_error: judged.standard_error,

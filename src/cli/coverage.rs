@@ -3,11 +3,11 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use etalon::render::Instructions;
-use etalon::scene::{self, Overrides};
-use etalon::study::choice::stem;
-use etalon::study::coverage::{Count, Coverage, SURVEY, Survey, cover};
-use etalon::study::subject::{Subject, SubjectError};
+use etalon::inside::render::Instructions;
+use etalon::inside::study::choice::stem;
+use etalon::inside::study::coverage::{Count, Coverage, SURVEY, Survey, cover};
+use etalon::inside::study::subject::{Subject, SubjectError};
+use etalon::{Overrides, Scene};
 
 use super::Answer;
 use super::args;
@@ -21,7 +21,7 @@ const SURVEY_SHARE: u32 = 16;
 /// Shares of blocks between which 95 % intervals are honest.
 const HONEST: [f64; 2] = [0.93, 0.97];
 /// Edge of blocks: pictures are whole blocks where they can be.
-const BLOCK: u32 = etalon::stats::blocks::EDGE as u32;
+const BLOCK: u32 = etalon::inside::stats::blocks::EDGE as u32;
 
 /// Tests all scenes with all samplers.
 pub fn run(arguments: &args::Coverage) -> Result<Answer, CommandError> {
@@ -65,7 +65,7 @@ fn test(arguments: &args::Coverage, path: &Path) -> Result<Vec<(String, Coverage
         set: arguments.set.clone(),
         ..Overrides::default()
     };
-    let [width, height] = scene::load(path, &overrides)?.image.size;
+    let [width, height] = Scene::load_with(path, &overrides)?.image.size;
     let scale = f64::from(arguments.edge) / f64::from(width.max(height));
     let pixels = |n: u32| {
         let scaled = f64::from(n) * scale / f64::from(BLOCK);

@@ -3,14 +3,10 @@
 use std::io;
 use std::path::PathBuf;
 
-use etalon::compare::CompareError;
-use etalon::film;
-use etalon::plan::PlanError;
-use etalon::render::bins::BinError;
-use etalon::render::memory::TooLarge;
-use etalon::render::tile::Outside;
-use etalon::render::trace::Singular;
-use etalon::scene::{Origin, SceneError};
+use etalon::{
+    BinError, CompareError, Origin, Outside, PictureError, PlanError, SceneError, Singular,
+    TooLarge,
+};
 
 use super::trace::RayError;
 
@@ -48,7 +44,7 @@ pub enum CommandError {
     NoVerdict(String),
     /// A picture cannot be written.
     #[error("error: {0}")]
-    Film(#[from] film::Error),
+    Film(#[from] PictureError),
     /// The spectral bins cannot be had.
     #[error("error: --layers spectral: {0}")]
     Bins(#[from] BinError),

@@ -2,8 +2,8 @@
 
 use std::io::Write as _;
 
-use etalon::plan::{Plan, explain};
-use etalon::scene;
+use etalon::inside::plan::explain;
+use etalon::{Plan, Scene};
 
 use super::Answer;
 use super::args::Info;
@@ -11,7 +11,7 @@ use super::error::CommandError;
 
 /// Describes the scene.
 pub fn run(arguments: &Info) -> Result<Answer, CommandError> {
-    let scene = scene::load(&arguments.scene.scene, &arguments.overrides())?;
+    let scene = Scene::load_with(&arguments.scene.scene, &arguments.overrides())?;
     let plan = Plan::new(&scene, false)?;
     let lines = explain::explain(&scene, &plan);
     let mut output = std::io::stdout().lock();

@@ -9,11 +9,10 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 use std::time::Instant;
 
-use etalon::film::{png, whole};
-use etalon::plan::explain;
-use etalon::render::Instructions;
-use etalon::render::goal::{Goal, Target};
-use etalon::scene;
+use etalon::inside::film::{png, whole};
+use etalon::inside::plan::explain;
+use etalon::inside::render::Instructions;
+use etalon::{Goal, Scene, Target};
 use rayon::ThreadPool;
 
 use super::args::Render;
@@ -50,7 +49,7 @@ fn jobs(arguments: &Render, instructions: Instructions) -> Result<Vec<Job>, Comm
         None => vec![None],
         Some(Panels::Named(name)) => vec![Some(name.clone())],
         Some(Panels::All) => {
-            let names = scene::panel_names(&path.display().to_string(), &scene::read(path)?)?;
+            let names = Scene::panels(path)?;
             if names.is_empty() {
                 return Err(CommandError::NoPanels(path.clone()));
             }

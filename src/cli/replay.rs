@@ -2,11 +2,10 @@
 
 use std::io::Write;
 
-use etalon::integrate::chunk::Request;
-use etalon::integrate::replay::{LightVertex, Replayed, Vertex};
-use etalon::plan::Plan;
-use etalon::render::{Instructions, replay};
-use etalon::scene::{self, Scene};
+use etalon::inside::integrate::chunk::Request;
+use etalon::inside::integrate::replay::{LightVertex, Replayed, Vertex};
+use etalon::inside::render::{Instructions, replay};
+use etalon::{Plan, Scene};
 use glam::DVec3;
 
 use super::Answer;
@@ -15,7 +14,7 @@ use super::error::CommandError;
 
 /// Follows the path asked for.
 pub fn run(arguments: &Replay) -> Result<Answer, CommandError> {
-    let scene = scene::load(&arguments.scene.scene, &arguments.overrides())?;
+    let scene = Scene::load_with(&arguments.scene.scene, &arguments.overrides())?;
     let [x, y] = arguments.pixel.0;
     let [width, height] = scene.image.size;
     if x >= width || y >= height {

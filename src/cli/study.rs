@@ -4,14 +4,14 @@ mod watch;
 
 use std::path::{Path, PathBuf};
 
-use etalon::chart::{self, Curve, Figure, Key, curves, figures};
-use etalon::study::budget::{BudgetError, Fits};
-use etalon::study::grid::GridError;
-use etalon::study::own::MARGIN;
-use etalon::study::reference::ReferenceError;
-use etalon::study::run::{Request, Study, run as run_study};
-use etalon::study::subject::{Subject, SubjectError};
-use etalon::study::{StudyError, choice, report};
+use etalon::inside::chart::{self, Curve, Figure, Key, curves, figures};
+use etalon::inside::study::budget::{BudgetError, Fits};
+use etalon::inside::study::grid::GridError;
+use etalon::inside::study::own::MARGIN;
+use etalon::inside::study::reference::ReferenceError;
+use etalon::inside::study::run::{Request, Study, run as run_study};
+use etalon::inside::study::subject::{Subject, SubjectError};
+use etalon::inside::study::{StudyError, choice, report};
 
 use super::args;
 use super::error::{CommandError, scene_words};
@@ -155,9 +155,9 @@ pub fn write_chart(base: &Path, svg: &str) -> Result<PathBuf, CommandError> {
 /// Writes a file, whole or not at all.
 pub fn write(path: &Path, content: &[u8]) -> Result<(), CommandError> {
     use std::io::Write as _;
-    Ok(etalon::film::whole::write(path, |file| {
+    Ok(etalon::inside::film::whole::write(path, |file| {
         file.write_all(content)
-            .map_err(|source| etalon::film::Error::Write {
+            .map_err(|source| etalon::inside::film::Error::Write {
                 path: path.to_owned(),
                 source,
             })

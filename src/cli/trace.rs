@@ -5,8 +5,8 @@ mod rays;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use etalon::render::trace::{Decided, First, FirstHit, Found, Tracer};
-use etalon::scene;
+use etalon::inside::render::trace::Decided;
+use etalon::{First, FirstHit, Found, Scene, Tier, Tracer};
 use rayon::prelude::*;
 
 use super::args::Trace;
@@ -15,7 +15,7 @@ use super::{Answer, tell};
 pub use rays::RayError;
 use rays::{Line, Lines, Table};
 
-use etalon::shape::implicit::certified::{Tier, Workspace};
+use etalon::inside::shape::implicit::certified::Workspace;
 
 const HEADING: &str = "id,hit,t,x,y,z,nx,ny,nz,object,\
      finder,enclosure_low,enclosure_high,multiplicity,tier\n";
@@ -27,7 +27,7 @@ const PIECES: usize = 256;
 
 /// Prints the first hit of each ray.
 pub fn run(arguments: &Trace) -> Result<Answer, CommandError> {
-    let scene = scene::load(&arguments.scene.scene, &arguments.overrides())?;
+    let scene = Scene::load_with(&arguments.scene.scene, &arguments.overrides())?;
     let tracer = Tracer::new(&scene)?;
     let mut lines = Lines::open(&arguments.rays)?;
     let table = lines.heading()?;

@@ -6,10 +6,9 @@ use std::time::Duration;
 
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use etalon::render::Instructions;
-use etalon::render::layers;
-use etalon::render::tile::Window;
-use etalon::study::axis::{Axis, AxisError};
+use etalon::Window;
+use etalon::inside::render::Instructions;
+use etalon::inside::study::axis::{Axis, AxisError};
 
 /// What is wrong with a value.
 #[derive(Debug, thiserror::Error)]
@@ -122,7 +121,7 @@ impl FromStr for Seconds {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Layer {
     /// About the first visible surface.
-    FirstHit(layers::Layer),
+    FirstHit(etalon::Layer),
     /// Spectral radiance in bins.
     Spectral(Option<SpectralRange>),
 }
@@ -142,18 +141,18 @@ impl FromStr for Layer {
     type Err = Expected;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        match text {
-            "depth" => Ok(Self::FirstHit(layers::Layer::Depth)),
-            "normal" => Ok(Self::FirstHit(layers::Layer::Normal)),
-            "object" => Ok(Self::FirstHit(layers::Layer::Object)),
-            "material" => Ok(Self::FirstHit(layers::Layer::Material)),
-            "spectral" => Ok(Self::Spectral(None)),
-            _ => match text.strip_prefix("spectral:") {
-                Some(range) => range.parse().map(|range| Self::Spectral(Some(range))),
-                None => Err(Expected(
-                    "depth, normal, object, material or spectral[:from-to:step]",
-                )),
-            },
+        let first = etalon::Layer::ALL
+            .into_iter()
+            .find(|(name, _)| *name == text);
+        if let Some((_, layer)) = first {
+            return Ok(Self::FirstHit(layer));
+        }
+        match (text, text.strip_prefix("spectral:")) {
+            ("spectral", _) => Ok(Self::Spectral(None)),
+            (_, Some(range)) => range.parse().map(|range| Self::Spectral(Some(range))),
+            _ => Err(Expected(
+                "depth, normal, object, material or spectral[:from-to:step]",
+            )),
         }
     }
 }

@@ -4,9 +4,10 @@
 //! A [`Side`] is what is known of one picture: means and variances by channel and pixel. From two
 //! sides come the [`metrics`](crate::stats::metrics), and, where both know their variances, a
 //! [`Judgement`]: image means by channel, block by block, and the distribution of all blocks, at
-//! one level for the whole family. [`stale`] finds references whose scene has changed since.
+//! one level for the whole family; a [`Comparison`] is all of it. [`stale`] finds references whose scene has changed since.
 
 mod blocks;
+mod comparison;
 mod flip;
 mod heatmap;
 mod judge;
@@ -15,6 +16,7 @@ mod side;
 pub mod stale;
 
 pub use blocks::{Block, LEAST_FREEDOM, blocks};
+pub use comparison::Comparison;
 pub use flip::flip;
 pub use heatmap::write_heatmap;
 pub use judge::{ChannelJudgement, Judgement, LEVEL, ROUNDING, against_truth, judge};

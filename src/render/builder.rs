@@ -11,6 +11,7 @@ use super::session::{Progress, Rendered, Request, Unwatched, render, render_binn
 use super::tile::{Outside, Window};
 use crate::film::pixels::{Estimate, Pixels};
 use crate::math::instructions::Instructions;
+use crate::plan::explain::explain;
 use crate::plan::{Plan, PlanError};
 use crate::scene::Scene;
 
@@ -103,6 +104,11 @@ impl Render {
     /// What is done about it.
     pub fn plan(&self) -> &Plan {
         &self.plan
+    }
+
+    /// What is done about the scene, and why, line by line.
+    pub fn explain(&self) -> Vec<String> {
+        explain(&self.scene, &self.plan)
     }
 
     /// The part of the picture that is wanted, if not all of it.

@@ -27,6 +27,14 @@ pub enum Layer {
 }
 
 impl Layer {
+    /// All of them, with the names by which they are asked for.
+    pub const ALL: [(&str, Self); 4] = [
+        ("depth", Self::Depth),
+        ("normal", Self::Normal),
+        ("object", Self::Object),
+        ("material", Self::Material),
+    ];
+
     /// Channels that it takes.
     pub fn channels(self) -> usize {
         match self {

@@ -10,7 +10,6 @@ use crate::film::provenance::Provenance;
 use crate::film::{Attribute, Channel, Picture, names};
 use crate::integrate::intersect::Rungs;
 use crate::plan::choose::Precision;
-use crate::plan::explain;
 
 impl Render {
     /// The picture of what [`run`](Self::run) has rendered: R, G, B and their standard errors, the
@@ -58,7 +57,7 @@ impl Render {
             replicates: rendered.replicates(),
             precision: plan.choices.precision.name().to_owned(),
             wavelengths: plan.choices.wavelengths,
-            plan: explain::explain(scene, plan).join("\n"),
+            plan: self.explain().join("\n"),
             max_depth: scene.image.max_depth,
             seconds: rendered.seconds,
             samples_per_second: rendered.samples_per_second(),

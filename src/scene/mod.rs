@@ -74,7 +74,15 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] for a file that cannot be read or holds no valid scene; it says where and why.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        load(path.as_ref(), &Overrides::default())
+        Self::load_with(path, &Overrides::default())
+    }
+
+    /// Reads a scene file and lays a panel, settings, or a finder over it.
+    ///
+    /// # Errors
+    /// As [`Scene::load`], and for what is laid over.
+    pub fn load_with(path: impl AsRef<Path>, over: &Overrides) -> Result<Self, SceneError> {
+        load(path.as_ref(), over)
     }
 
     /// Reads a scene from the text of a scene file; the files it names are looked for from the
@@ -84,6 +92,15 @@ impl Scene {
     /// As [`Scene::load`].
     pub fn parse(text: &str) -> Result<Self, SceneError> {
         parse("scene", text, Path::new(""), &Overrides::default())
+    }
+
+    /// The names of the panels of a scene file, in its order.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn panels(path: impl AsRef<Path>) -> Result<Vec<String>, SceneError> {
+        let path = path.as_ref();
+        panel_names(&path.display().to_string(), &read(path)?)
     }
 
     /// Takes this many samples a pixel, as `image.spp` laid over the file would.

@@ -132,9 +132,20 @@ impl Estimate {
     }
 }
 
-/// `value ± standard error`, the latter with two significant digits.
+/// `value ± standard error`, both up to the second digit of the latter where it is known.
 impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} ± {:.1e}", self.value, self.standard_error)
+        let Self {
+            value,
+            standard_error,
+            ..
+        } = self;
+        let decimals = 1.0 - standard_error.log10().floor();
+        if (0.0..=17.0).contains(&decimals) {
+            let decimals = decimals as usize;
+            write!(f, "{value:.decimals$} ± {standard_error:.decimals$}")
+        } else {
+            write!(f, "{value:?} ± {standard_error:?}")
+        }
     }
 }

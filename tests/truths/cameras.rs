@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use etalon::math::affine::Affine;
-use etalon::render::tile::Window;
-use etalon::shape::{Placed, Ray, ShapeKind, Start, Tally};
+use etalon::Window;
+use etalon::inside::math::affine::Affine;
+use etalon::inside::shape::{Placed, Ray, ShapeKind, Start, Tally};
 use glam::{DMat3, DVec3};
 use serde_json::Value;
 

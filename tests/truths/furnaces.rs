@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use etalon::spectrum::ior::named_glass;
+use etalon::inside::spectrum::ior::named_glass;
 use glam::DVec3;
 
 use super::glass::{fresnel_dielectric, over_wavelengths};

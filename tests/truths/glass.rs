@@ -2,9 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use etalon::spectrum::ior::named_glass;
-use etalon::spectrum::observer::{Y_INTEGRAL, xyz_bar};
-use etalon::spectrum::{NM_MAX, NM_MIN};
+use etalon::inside::spectrum::ior::named_glass;
+use etalon::inside::spectrum::observer::{Y_INTEGRAL, xyz_bar};
+use etalon::inside::spectrum::{NM_MAX, NM_MIN};
 use glam::{DVec2, DVec3};
 
 use super::harness::Case;

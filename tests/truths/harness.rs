@@ -2,11 +2,10 @@
 
 use std::path::Path;
 
-use etalon::plan::Plan;
-use etalon::render::session::{Rendered, Request, Unwatched, render as run};
-use etalon::render::tile::Window;
-use etalon::scene::{Overrides, parse};
-use etalon::stats::{Estimate, family, student};
+use etalon::inside::render::session::{Request, Unwatched, render as run};
+use etalon::inside::scene::parse;
+use etalon::inside::stats::{family, student};
+use etalon::{Estimate, Overrides, Plan, Rendered, Window};
 use rayon::prelude::*;
 
 use super::scenes::Text;

@@ -7,7 +7,7 @@ use super::glass::{bow_scene, descartes, fresnel_dielectric};
 use super::harness::{Case, holm, judge, mean, measure_all, render};
 use super::scenes::Text;
 use super::{number, truth};
-use etalon::stats::Estimate;
+use etalon::Estimate;
 
 /// Every pixel is zero, exactly.
 fn assert_black(name: &str, text: &Text) {

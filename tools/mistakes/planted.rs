@@ -5,18 +5,18 @@
 //! cosine under parallel light, the Fresnel term under one angle of incidence. With the feature `planted`
 //! both are also planted in the loop itself, where scenes may have all directions.
 
-use etalon::camera::LaneCamera;
-use etalon::declare::Value;
-use etalon::integrate::model::{Appearance, Model};
-use etalon::integrate::parts::Parts;
-use etalon::light::{LightShape, SmallLights};
-use etalon::material::{MaterialKind, fresnel};
-use etalon::math::lanes::Scalar;
-use etalon::plan::{Plan, Tables};
+use etalon::inside::camera::LaneCamera;
+use etalon::inside::declare::Value;
+use etalon::inside::integrate::model::{Appearance, Model};
+use etalon::inside::integrate::parts::Parts;
+use etalon::inside::light::{LightShape, SmallLights};
+use etalon::inside::material::{MaterialKind, fresnel};
+use etalon::inside::math::lanes::Scalar;
+use etalon::inside::plan::Tables;
 #[cfg(feature = "planted")]
-use etalon::planted::Planted;
-use etalon::scene::Scene;
-use etalon::spectrum::grid::{CELLS, LONGEST, SHORTEST, WavelengthGrid};
+use etalon::inside::planted::Planted;
+use etalon::inside::spectrum::grid::{CELLS, LONGEST, SHORTEST, WavelengthGrid};
+use etalon::{Plan, Scene};
 
 /// What can be wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -163,7 +163,7 @@ fn cosine<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
     let [light] = scene.lights.as_slice() else {
         return false;
     };
-    let etalon::scene::Light::Directional { direction, .. } = light else {
+    let etalon::inside::scene::Light::Directional { direction, .. } = light else {
         return false;
     };
     for k in 0..model.lights.len() {

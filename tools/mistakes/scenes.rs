@@ -4,7 +4,8 @@
 
 use std::path::Path;
 
-use etalon::scene::{Overrides, Scene, parse};
+use etalon::inside::scene::parse;
+use etalon::{Overrides, Scene};
 
 /// Name and text of each scene; `image` has no samples, which are planned.
 pub const SCENES: &[(&str, &str)] = &[

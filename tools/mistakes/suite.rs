@@ -1,8 +1,8 @@
 //! The reduced suite: the same verdicts as on the references, on the scenes here, with etalon in the
 //! place of the reference and both sides drawn afresh each time.
 
-use etalon::plan::Plan;
-use etalon::study::agreement::{Case, Levels, Paths, Planned, decide, plan};
+use etalon::Plan;
+use etalon::inside::study::agreement::{Case, Levels, Paths, Planned, decide, plan};
 
 use super::planted::{Mistake, plant};
 use super::scenes::{SCENES, scene};

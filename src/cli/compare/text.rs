@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use etalon::compare::{Judgement, Metrics};
-use etalon::stats::metrics::Metric;
+use etalon::inside::stats::metrics::Metric;
+use etalon::{Judgement, Metrics};
 
 use super::{Report, With, score};
 
@@ -22,7 +22,7 @@ pub fn text(report: &Report) -> String {
         ),
     };
     push_metrics(&mut text, report);
-    if let Some(judgement) = &report.judgement {
+    if let Some(judgement) = &report.comparison.judgement {
         push_judgement(&mut text, judgement);
     }
     if let Some(scale) = report.heatmap_scale {
@@ -40,7 +40,7 @@ pub fn text(report: &Report) -> String {
 }
 
 fn push_metrics(text: &mut String, report: &Report) {
-    if report.channels.is_empty() {
+    if report.comparison.channels.is_empty() {
         return;
     }
     let _ = writeln!(
@@ -56,19 +56,19 @@ fn push_metrics(text: &mut String, report: &Report) {
         "relMSE - var B",
         "SMAPE"
     );
-    for channel in &report.channels {
+    for channel in &report.comparison.channels {
         let [a, b] = channel.means;
         let means = format!("{:<20} {a:>12.6} {b:>12.6}", channel.channel);
         push_row(text, &means, &channel.metrics);
     }
-    if let Some(metrics) = &report.rgb {
+    if let Some(metrics) = &report.comparison.rgb {
         push_row(
             text,
             &format!("{:<20} {:>12} {:>12}", "R, G, B", "", ""),
             metrics,
         );
     }
-    if let Some(flip) = &report.flip {
+    if let Some(flip) = &report.comparison.flip {
         let _ = writeln!(
             text,
             "HDR-FLIP {:.4} (0 looks the same, 1 is the worst)",

@@ -3,11 +3,7 @@
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-use etalon::plan::Plan;
-use etalon::render::bins::BinGrid;
-use etalon::render::builder::{self, MOST_SAMPLES};
-use etalon::render::{Instructions, layers};
-use etalon::scene;
+use etalon::{BinGrid, Instructions, MOST_SAMPLES, Plan, Scene};
 
 use super::super::args::Render;
 use super::super::error::CommandError;
@@ -24,7 +20,7 @@ const USUAL_BINS: SpectralRange = SpectralRange {
 /// One picture to render.
 pub struct Job {
     /// What it is made of.
-    pub render: builder::Render,
+    pub render: etalon::Render,
     /// The OpenEXR file.
     pub output: PathBuf,
     /// The preview beside it; none beside a device or pipe.
@@ -38,7 +34,7 @@ impl Job {
         panel: Option<&str>,
         instructions: Instructions,
     ) -> Result<Self, CommandError> {
-        let mut scene = scene::load(&arguments.scene.scene, &arguments.overrides(panel))?;
+        let mut scene = Scene::load_with(&arguments.scene.scene, &arguments.overrides(panel))?;
         // With a wanted error pilots choose the samples, before the time counts.
         let open = arguments.time.is_some() && arguments.target_error.is_none();
         if open && !arguments.sets_spp() {
@@ -48,8 +44,7 @@ impl Job {
             scene.set_samples(MOST_SAMPLES);
         }
         let plan = Plan::new(&scene, arguments.plan.is_full())?;
-        let mut render =
-            builder::Render::planned(scene, plan).with_layers(first(&arguments.layers));
+        let mut render = etalon::Render::planned(scene, plan).with_layers(first(&arguments.layers));
         if let Some(crop) = arguments.crop {
             render = render.cropped(crop.0)?;
         }
@@ -73,7 +68,7 @@ impl Job {
 }
 
 /// The layers about the first visible surface that are asked for.
-fn first(layers: &[Layer]) -> impl Iterator<Item = layers::Layer> {
+fn first(layers: &[Layer]) -> impl Iterator<Item = etalon::Layer> {
     layers.iter().filter_map(|layer| match layer {
         Layer::FirstHit(layer) => Some(*layer),
         Layer::Spectral(_) => None,

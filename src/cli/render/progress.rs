@@ -4,8 +4,8 @@ use std::io::IsTerminal;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
-use etalon::film::whole;
-use etalon::render::Progress;
+use etalon::Progress;
+use etalon::inside::film::whole;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 
 use super::job::Job;

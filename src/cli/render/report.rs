@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use etalon::render::Rendered;
-use etalon::render::goal::{Chosen, Goal, Target, reached};
-use etalon::scene::{Image, Scene};
+use etalon::inside::render::goal::reached;
+use etalon::inside::scene::Image;
+use etalon::{Chosen, Goal, Rendered, Scene, Target};
 
 use super::super::quoted;
 use super::job::Job;

@@ -3,7 +3,7 @@
 use std::io::IsTerminal;
 use std::time::Duration;
 
-use etalon::study::run::Watch;
+use etalon::inside::study::run::Watch;
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 
 use super::super::render::progress::interrupted;

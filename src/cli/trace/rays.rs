@@ -4,7 +4,7 @@ use std::fmt;
 use std::io::{self, BufRead, Read};
 use std::path::{Path, PathBuf};
 
-use etalon::shape::{Query, Ray};
+use etalon::inside::shape::{Query, Ray};
 use glam::DVec3;
 
 /// Rays that cannot be had.

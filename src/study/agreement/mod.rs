@@ -6,7 +6,7 @@
 //! can be afforded allow ([`Planned`]). Then each question gets one of three verdicts; what is
 //! inconclusive is asked again of fresh samples, four times as many, at most [`ROUNDS`] times
 //! ([`Outcome`]). Blocks of pixels and their distribution are judged besides, as
-//! [`compare`](crate::compare) does.
+//! `compare` does.
 
 mod case;
 mod outcome;

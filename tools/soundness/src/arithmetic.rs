@@ -2,8 +2,9 @@
 
 use std::cmp::Ordering;
 
-use etalon::math::instructions::{DoubleLanes, Instructions, Job};
-use etalon::math::interval::Interval;
+use etalon::Instructions;
+use etalon::inside::math::instructions::{DoubleLanes, Job};
+use etalon::inside::math::interval::Interval;
 
 use super::exact::{compare_product, compare_sum};
 use super::random::Source;
@@ -112,7 +113,7 @@ fn outward<L: DoubleLanes>(operation: Operation, a: Interval<L>, b: Interval<L>)
 /// The mistake that must be found: bounds rounded to nearest.
 #[inline(always)]
 fn nearest<L: DoubleLanes>(operation: Operation, a: Interval<L>, b: Interval<L>) -> Interval<L> {
-    use etalon::math::lanes::Real;
+    use etalon::inside::math::lanes::Real;
     let l = a.lanes;
     let around = |[w, x, y, z]: [L::Real; 4]| {
         Interval::new(l, w.min(x).min(y.min(z)), w.max(x).max(y.max(z)))

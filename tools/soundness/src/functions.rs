@@ -1,8 +1,9 @@
 //! Elementary functions of random intervals, against a high-precision reference.
 
 use astro_float::{BigFloat, Consts, RoundingMode};
-use etalon::math::instructions::{DoubleLanes, Instructions, Job};
-use etalon::math::interval::{Domain, Interval};
+use etalon::Instructions;
+use etalon::inside::math::instructions::{DoubleLanes, Job};
+use etalon::inside::math::interval::{Domain, Interval};
 
 use super::arithmetic::{Bounds, Report};
 use super::random::Source;
@@ -97,7 +98,7 @@ impl Job<f64> for Apply<'_> {
             let c = enclosed(self.function, a, b, &mut domain);
             l.store(c.low, &mut out.low[i..]);
             l.store(c.high, &mut out.high[i..]);
-            let bits = etalon::math::interval::bits(domain.broken);
+            let bits = etalon::inside::math::interval::bits(domain.broken);
             for j in 0..L::COUNT {
                 broken[i + j] = bits >> j & 1 == 1;
             }

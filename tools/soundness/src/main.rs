@@ -11,7 +11,7 @@ use std::process::ExitCode;
 
 use arithmetic::{OPERATIONS, Report};
 use clap::Parser;
-use etalon::math::instructions::Instructions;
+use etalon::Instructions;
 use functions::FUNCTIONS;
 use rayon::prelude::*;
 

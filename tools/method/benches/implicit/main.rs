@@ -18,18 +18,19 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use etalon::field::expression::Expression;
-use etalon::field::named;
-use etalon::math::affine::Affine;
-use etalon::math::instructions::{Instructions, Job};
-use etalon::math::lanes::{Lanes, Mask};
-use etalon::math::vec3::Vec3;
-use etalon::scene::{FinderChoice, Implicit};
-use etalon::shape::Query;
-use etalon::shape::implicit::baseline::SteppingFinder;
-use etalon::shape::implicit::certified::{Certified, Packet, WIDTH, Wish, Workspace};
-use etalon::shape::lanes::LaneRay;
-use etalon::shape::lanes::implicit::{LaneImplicit, StartSign};
+use etalon::Instructions;
+use etalon::inside::field::expression::Expression;
+use etalon::inside::field::named;
+use etalon::inside::math::affine::Affine;
+use etalon::inside::math::instructions::Job;
+use etalon::inside::math::lanes::{Lanes, Mask};
+use etalon::inside::math::vec3::Vec3;
+use etalon::inside::scene::{FinderChoice, Implicit};
+use etalon::inside::shape::Query;
+use etalon::inside::shape::implicit::baseline::SteppingFinder;
+use etalon::inside::shape::implicit::certified::{Certified, Packet, WIDTH, Wish, Workspace};
+use etalon::inside::shape::lanes::LaneRay;
+use etalon::inside::shape::lanes::implicit::{LaneImplicit, StartSign};
 use etalon_method::finders::{CLASSES, Oracle};
 use glam::DVec3;
 use yardstick::Yardstick;
@@ -180,7 +181,7 @@ fn times(surface: &Surface, rays: &[Ray]) -> [f64; 5] {
     });
     let march = best(|| {
         count(&|r| {
-            let ray = etalon::shape::Ray {
+            let ray = etalon::inside::shape::Ray {
                 origin: r.origin,
                 direction: r.direction,
             };

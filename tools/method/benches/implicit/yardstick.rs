@@ -7,9 +7,9 @@
 
 use std::cell::RefCell;
 
-use etalon::field::program::{LARGEST_DEGREE, Program, Step};
-use etalon::field::tape::Tape;
-use etalon::root::bernstein::DEGREES;
+use etalon::inside::field::program::{LARGEST_DEGREE, Program, Step};
+use etalon::inside::field::tape::Tape;
+use etalon::inside::root::bernstein::DEGREES;
 use glam::DVec3;
 
 const ROOM: usize = LARGEST_DEGREE + 1;

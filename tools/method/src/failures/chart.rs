@@ -10,7 +10,7 @@ use super::families::{FAMILIES, Family};
 use super::{Method, Point, SUBJECTS, Subject};
 use crate::finders::Precision;
 use crate::finders::chart::{ChartError, failed};
-use etalon::scene::FinderChoice;
+use etalon::inside::scene::FinderChoice;
 
 /// One row a point.
 pub fn csv(points: &[Point]) -> String {

@@ -7,13 +7,13 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use super::Subject;
-use etalon::field::evaluate::Field;
-use etalon::field::expression::{Expression, parse};
-use etalon::field::named;
-use etalon::math::affine::Affine;
-use etalon::scene::{FinderChoice, Implicit};
-use etalon::shape::implicit::certified::Certified;
-use etalon::shape::{Ray, ShapeKind};
+use etalon::inside::field::evaluate::Field;
+use etalon::inside::field::expression::{Expression, parse};
+use etalon::inside::field::named;
+use etalon::inside::math::affine::Affine;
+use etalon::inside::scene::{FinderChoice, Implicit};
+use etalon::inside::shape::implicit::certified::Certified;
+use etalon::inside::shape::{Ray, ShapeKind};
 
 /// What makes rays hard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

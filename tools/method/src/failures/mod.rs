@@ -22,12 +22,12 @@ use std::time::Instant;
 use glam::DVec3;
 
 use crate::finders::{Contestant, Precision, Ready, Score};
-use etalon::math::affine::Affine;
-use etalon::math::lanes::Scalar;
-use etalon::scene::FinderChoice;
-use etalon::shape::implicit::certified::Workspace;
-use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
-use etalon::shape::{Placed, Query, Ray, ShapeKind, Start, Tally};
+use etalon::inside::math::affine::Affine;
+use etalon::inside::math::lanes::Scalar;
+use etalon::inside::scene::FinderChoice;
+use etalon::inside::shape::implicit::certified::Workspace;
+use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
+use etalon::inside::shape::{Placed, Query, Ray, ShapeKind, Start, Tally};
 use families::{Body, Case, FAMILIES, Family, Problem};
 use textbook::Textbook;
 use truth::First;

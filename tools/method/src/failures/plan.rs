@@ -4,9 +4,10 @@ use std::path::Path;
 
 use super::families::Problem;
 use super::{Precision, Subject};
-use etalon::plan::choose::{self, choose};
-use etalon::scene::{Overrides, Shape, parse};
-use etalon::shape::ShapeKind;
+use etalon::Overrides;
+use etalon::inside::plan::choose::{self, choose};
+use etalon::inside::scene::{Shape, parse};
+use etalon::inside::shape::ShapeKind;
 
 /// Pixels along the picture's height, which the object about fills.
 const PIXELS: u32 = 256;

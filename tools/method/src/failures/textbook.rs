@@ -3,9 +3,9 @@
 
 use glam::{DMat3, DVec3};
 
-use etalon::math::affine::Affine;
-use etalon::math::lanes::Scalar;
-use etalon::shape::{Ray, ShapeKind};
+use etalon::inside::math::affine::Affine;
+use etalon::inside::math::lanes::Scalar;
+use etalon::inside::shape::{Ray, ShapeKind};
 
 /// A canonical shape, placed.
 #[derive(Debug, Clone)]

@@ -7,11 +7,11 @@ use std::cmp::Ordering;
 
 use super::Subject;
 use super::families::{Body, Case};
-use etalon::math::exact::Exact;
-use etalon::math::number::{Number, dot, power_of_two};
-use etalon::shape::ladder::{Ladder, ScaledRay};
-use etalon::shape::line::LocalRay;
-use etalon::shape::{Ray, ShapeKind};
+use etalon::inside::math::exact::Exact;
+use etalon::inside::math::number::{Number, dot, power_of_two};
+use etalon::inside::shape::ladder::{Ladder, ScaledRay};
+use etalon::inside::shape::line::LocalRay;
+use etalon::inside::shape::{Ray, ShapeKind};
 
 /// The first hit of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]

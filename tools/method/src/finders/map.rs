@@ -4,9 +4,9 @@ use glam::DVec3;
 use image::{Rgb, RgbImage};
 
 use super::{Answer, CONTESTANTS, Contestant, OracleShape};
-use etalon::scene::FinderChoice;
-use etalon::shape::Ray;
-use etalon::shape::implicit::certified::Workspace;
+use etalon::inside::scene::FinderChoice;
+use etalon::inside::shape::Ray;
+use etalon::inside::shape::implicit::certified::Workspace;
 
 /// Right hit, right miss, wrong, undecided, and where the truth itself is not known.
 const RIGHT_HIT: Rgb<u8> = Rgb([150, 165, 180]);

@@ -5,11 +5,11 @@ use std::cell::RefCell;
 use num_rational::BigRational;
 
 use super::Answer;
-use etalon::field::evaluate::{binary, nearest, unary};
-use etalon::field::tape::{Algebra, Binary, Tape, Unary};
-use etalon::math::lanes::Scalar;
-use etalon::root::sign_change::first_change;
-use etalon::shape::Ray;
+use etalon::inside::field::evaluate::{binary, nearest, unary};
+use etalon::inside::field::tape::{Algebra, Binary, Tape, Unary};
+use etalon::inside::math::lanes::Scalar;
+use etalon::inside::root::sign_change::first_change;
+use etalon::inside::shape::Ray;
 
 /// A surface to step along.
 pub struct March<T> {

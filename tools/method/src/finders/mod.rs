@@ -8,11 +8,11 @@ mod oracle;
 
 use std::time::Instant;
 
-use etalon::math::affine::Affine;
-use etalon::scene::{FinderChoice, Implicit};
-use etalon::shape::implicit::certified::Workspace;
-use etalon::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
-use etalon::shape::{Query, Ray};
+use etalon::inside::math::affine::Affine;
+use etalon::inside::scene::{FinderChoice, Implicit};
+use etalon::inside::shape::implicit::certified::Workspace;
+use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
+use etalon::inside::shape::{Query, Ray};
 
 use march::March;
 pub use oracle::{Oracle, OracleError, OracleRay, OracleShape};

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::Answer;
-use etalon::field::expression::{Expression, Parameter, parse, rational};
-use etalon::shape::Ray;
+use etalon::inside::field::expression::{Expression, Parameter, parse, rational};
+use etalon::inside::shape::Ray;
 
 /// Rays and surfaces that come with the program.
 const RAYS: &str = include_str!("../../../../tests/data/implicit.csv");

@@ -1,0 +1,148 @@
+//! The library as its users meet it: what the tour in `src/lib.rs` does not show.
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that cannot go on has failed, and the panic says where"
+)]
+
+use std::fs;
+use std::path::Path;
+
+use etalon::inside::scene::parse;
+use etalon::{Attribute, Goal, Overrides, Progress, Render, Scene, Target, Window};
+
+const SCENE: &str = r#"
+environment = 0.5
+camera = { from = [0, 1, 6], to = [0, 0, 0], fov = 40 }
+image = { size = [20, 18], spp = 8 }
+materials.grey = { diffuse = 0.5 }
+materials.lamp = { emit = 3 }
+
+[[object]]
+shape = "sphere"
+material = "grey"
+
+[[object]]
+shape = "disk"
+material = "lamp"
+transform = [{ rotate_x = 90 }, { translate = [0, 3, 0] }]
+"#;
+
+fn text<'a>(picture: &'a etalon::Picture, name: &str) -> &'a str {
+    match picture.attribute(name) {
+        Some(Attribute::Text(text)) => text,
+        other => panic!("{name} is {other:?}"),
+    }
+}
+
+#[test]
+fn a_picture_holds_what_it_takes_to_make_it_again() {
+    let mut scene = Scene::parse(SCENE).unwrap();
+    scene.set_samples(4);
+    let mut render = Render::new(scene).unwrap();
+    render.reseed(7);
+    let picture = render.picture(&render.run()).unwrap();
+    let over = Overrides {
+        set: Overrides::pairs(text(&picture, "settings")),
+        ..Overrides::default()
+    };
+    let scene = parse("again", text(&picture, "sceneText"), Path::new(""), &over).unwrap();
+    assert_eq!((scene.image.spp, scene.image.seed), (4, 7));
+    let render = Render::new(scene).unwrap();
+    assert_eq!(
+        render.picture(&render.run()).unwrap().channels,
+        picture.channels
+    );
+}
+
+#[test]
+fn means_over_regions_are_those_of_their_pixels() {
+    let render = Render::new(Scene::parse(SCENE).unwrap()).unwrap();
+    let whole = render.run();
+    let mean = whole.mean(render.window()).unwrap();
+    // The same sums in another order: 360 additions of at most an ulp each.
+    let other = whole.mean_luminance();
+    assert!((mean.luminance.value / other.value - 1.0).abs() < 360.0 * f64::EPSILON);
+    let ratio = mean.luminance.standard_error / other.standard_error;
+    assert!((ratio - 1.0).abs() < 360.0 * f64::EPSILON);
+
+    // A part of a part is a part of the whole.
+    let crop = Window {
+        x0: 3,
+        y0: 2,
+        x1: 19,
+        y1: 17,
+    };
+    let part = Window {
+        x0: 5,
+        y0: 4,
+        x1: 12,
+        y1: 9,
+    };
+    let cropped = render.cropped(crop).unwrap().run();
+    assert_eq!(cropped.mean(part), whole.mean(part));
+    for outside in [
+        Window { x0: 2, ..part },
+        Window { y1: 18, ..part },
+        Window { x1: 5, ..part },
+    ] {
+        assert_eq!(cropped.mean(outside).unwrap_err().window, outside);
+    }
+}
+
+/// Stops after the first pass.
+struct Impatient;
+
+impl Progress for Impatient {
+    fn passed(&mut self, _: u32, _: u32, _: std::time::Duration, _: Option<f64>) -> bool {
+        false
+    }
+}
+
+#[test]
+fn pilots_that_are_stopped_leave_everything_as_it_was() {
+    let goal = Goal {
+        target: Target::Image,
+        error: 1e-4,
+    };
+    for sampler in ["sobol", "stratified"] {
+        let text = SCENE.replace("spp = 8", &format!("spp = 8, sampler = \"{sampler}\""));
+        let mut render = Render::new(Scene::parse(&text).unwrap()).unwrap();
+        let before = render.run().rgb();
+        assert!(render.aim(goal, &mut Impatient).unwrap().is_none());
+        assert!(render.goal().is_none());
+        assert_eq!(render.run().rgb(), before, "{sampler}");
+    }
+}
+
+/// A library's user has no terminal and no flags.
+#[test]
+fn words_of_the_library_know_no_command_line() {
+    fn search(folder: &Path, found: &mut Vec<String>) {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() && !path.ends_with("cli") {
+                search(&path, found);
+            } else if path.extension().is_some_and(|ending| ending == "rs") {
+                let text = fs::read_to_string(&path).unwrap();
+                let code = text
+                    .lines()
+                    .filter(|line| !line.trim_start().starts_with("//"));
+                let flag = |line: &str| {
+                    line.split("--")
+                        .skip(1)
+                        .any(|rest| rest.starts_with(|c: char| c.is_ascii_lowercase()))
+                };
+                found.extend(
+                    code.filter(|line| line.contains("\"error:") || flag(line))
+                        .map(|line| format!("{}: {line}", path.display())),
+                );
+            }
+        }
+    }
+    let mut found = Vec::new();
+    search(
+        &Path::new(env!("CARGO_MANIFEST_DIR")).join("src"),
+        &mut found,
+    );
+    assert!(found.is_empty(), "{found:#?}");
+}
