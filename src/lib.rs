@@ -155,7 +155,7 @@
 //!
 //! # Rooms
 //!
-//! A room uses those after its arrow, and no others; the first eleven are the crate `etalon-lanes`.
+//! A room uses those after its arrow, and no others; the first twelve are the crate `etalon-lanes`.
 //!
 //! ```text
 //! math →
@@ -163,15 +163,17 @@
 //! field → math
 //! sample → math
 //! spectrum → math
-//! material → math
+//! declare → spectrum
+//! planted → math
+//! material → declare, planted, sample, spectrum, math
 //! shape → field, root, math
 //! camera → sample, math
 //! light → shape, sample, math
-//! integrate → camera, light, material, shape, sample, spectrum, math
+//! integrate → camera, light, material, planted, shape, sample, spectrum, math
 //! stats →
 //! film → sample, spectrum, math
-//! scene → camera, shape, field, sample, spectrum, math
-//! plan → scene, integrate, film, camera, light, material, shape, sample, spectrum, math
+//! scene → camera, declare, field, material, shape, sample, spectrum, math
+//! plan → scene, integrate, film, camera, declare, light, material, shape, sample, spectrum, math
 //! render → plan, scene, integrate, film, camera, shape, sample, spectrum, stats, math
 //! compare → scene, film, spectrum, stats
 //! chart → stats

@@ -33,7 +33,7 @@ pub struct Tracer {
 /// An object, placed.
 #[derive(Debug)]
 enum Traced {
-    Canonical(Placed),
+    Canonical(Box<Placed>),
     Implicit(Box<PlacedImplicit>),
 }
 
@@ -124,9 +124,8 @@ impl Tracer {
     pub fn new(scene: &Scene) -> Result<Self, Singular> {
         let place = |Named { name, value }: &Named<Object>| {
             let traced = match &value.shape {
-                Shape::Canonical(kind) => {
-                    Placed::new(*kind, &value.to_world).map(Traced::Canonical)
-                }
+                Shape::Canonical(kind) => Placed::new(*kind, &value.to_world)
+                    .map(|placed| Traced::Canonical(Box::new(placed))),
                 Shape::Implicit(implicit) => PlacedImplicit::new(implicit, &value.to_world)
                     .map(|placed| Traced::Implicit(Box::new(placed))),
             };
@@ -229,7 +228,7 @@ impl Tracer {
         let canonical = candidates.iter().filter_map(|&object| {
             let object = object as usize;
             match &self.objects[object] {
-                Traced::Canonical(placed) => Some((object, placed)),
+                Traced::Canonical(placed) => Some((object, &**placed)),
                 Traced::Implicit(_) => None,
             }
         });

@@ -17,7 +17,7 @@
 //! the hit's own coordinates decides where it points. Where an enclosure of a polynomial's hit is known
 //! (as for `trace`), a gradient that is not certain to [`SHARP`] is taken at the exact root instead: t
 //! narrowed to some 2⁻²⁴⁴ of the clipped ray and everything else exact
-//! ([`Certified::gradient_direction`](super::certified::Certified::gradient_direction)). At both ends
+//! (`shape::implicit::certified`). At both ends
 //! of that enclosure it has the same direction, or else the point is singular for all that could
 //! matter, and the rule above holds.
 

@@ -3,7 +3,7 @@
 //! Each shape is a closed set in canonical coordinates (one file a shape), placed in the world by
 //! any invertible 3×4 matrix, which *is* the object: nothing is decided by a rounded inverse. The
 //! question "does the line meet it, and which crossing comes first" is a matter of signs of
-//! polynomials in the given numbers. It is written once, over [`Number`],
+//! polynomials in the given numbers. It is written once, over [`Number`](crate::math::number::Number),
 //! without division or square root, and asked on a ladder: f64 with a forward error bound, then
 //! double-double with one, then exactly. The first rung that knows answers (Woop, Benthin, Wald
 //! 2013, JCGT 2(1), for the pattern of a fast test with a rare exact fallback).

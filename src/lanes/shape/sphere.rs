@@ -284,7 +284,7 @@ impl<L: Lanes> Foot<L> {
     }
 
     /// Where the line meets the ball. Canonical coordinates would be those about the centre over r,
-    /// so that the bounds of [`ellipsoid_span`], times r or r², hold with E r = 6u (max|o| + |c| + r),
+    /// so that the bounds of `ellipsoid_span`, times r or r², hold with E r = 6u (max|o| + |c| + r),
     /// D r = 6u, and q = D r, where 64q² is less than u.
     #[inline(always)]
     pub fn span(&self, l: L, ball: &impl Asked<L>, ray: &LaneRay<L>) -> lanes::Span<L> {

@@ -155,7 +155,7 @@ pub struct ImplicitHit {
     pub t: f64,
     /// World coordinates.
     pub point: DVec3,
-    /// Unit outward normal in the world; see [`normal`](super::normal) for where the gradient
+    /// Unit outward normal in the world; see [`normal`](crate::field::normal) for where the gradient
     /// vanishes.
     pub normal: Option<DVec3>,
     /// Bounds of t; the estimate twice where nothing is proved.
