@@ -1,20 +1,11 @@
 //! Fresnel reflectances against published formulas, over both kinds of interface and to the edges.
 
 use etalon::inside::light::LightShape;
-use etalon::inside::material::fresnel::{conductor, dielectric, dielectric_reflectance};
-use etalon::inside::math::lanes::Lanes;
+use etalon::inside::material::fresnel::{conductor, dielectric_reflectance};
+use etalon_doors::fresnel::dielectric;
 
-use crate::lanes_support::{Kernel, PRECISIONS, Precision, map_everywhere};
+use crate::lanes_support::{PRECISIONS, Precision, everywhere};
 use crate::truth_file::{list, number, truth};
-
-struct Dielectric;
-impl Kernel<2, 2> for Dielectric {
-    #[inline(always)]
-    fn apply<L: Lanes>(&self, l: L, [cosine, eta]: [L::Real; 2]) -> [L::Real; 2] {
-        let (transmitted, reflectance) = dielectric(l, cosine, eta);
-        [transmitted, reflectance]
-    }
-}
 
 /// Reflectance of one value in a precision.
 fn scalar(precision: Precision, cosine: f64, eta: f64) -> f64 {
@@ -44,7 +35,7 @@ fn dielectrics_match_the_table() {
                 .collect();
             let etas = vec![n; cosines.len()];
             let [transmitted, reflectance] =
-                map_everywhere(precision, &Dielectric, &[cosines.clone(), etas]);
+                everywhere(|set| dielectric(set, precision, [&cosines, &etas]));
             for (i, row) in rows.iter().enumerate() {
                 let want = number(&row["R"]);
                 // Rounding cos θ and η, enlarged by |dR/dcos θ| ≤ 10 (steepest at 41°, just below
@@ -108,7 +99,7 @@ fn dielectrics_are_sane_at_the_edges() {
     }
     for precision in PRECISIONS {
         let [transmitted, reflectance] =
-            map_everywhere(precision, &Dielectric, &[cosines.clone(), etas.clone()]);
+            everywhere(|set| dielectric(set, precision, [&cosines, &etas]));
         for i in 0..cosines.len() {
             let (c, eta) = (precision.rounded(cosines[i]), precision.rounded(etas[i]));
             let (t, r) = (transmitted[i], reflectance[i]);

@@ -6,16 +6,14 @@ use std::sync::Arc;
 use etalon::inside::field::bounded;
 use etalon::inside::field::evaluate::{Field, nearest};
 use etalon::inside::field::expression::{Expression, parse};
-use etalon::inside::field::lanes::{LaneField, Scratch};
 use etalon::inside::field::named::{self, SURFACES};
 use etalon::inside::field::normal::outward;
 use etalon::inside::math::affine::Affine;
-use etalon::inside::math::lanes::Lanes;
-use etalon::inside::math::vec3::Vec3;
 use etalon::inside::scene::{FinderChoice, Implicit};
 use etalon::inside::shape::implicit::certified::Workspace;
 use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
 use etalon::inside::shape::{Query, Ray};
+use etalon_doors::fields::values_and_gradients;
 use glam::DVec3;
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -23,7 +21,7 @@ use num_traits::ToPrimitive;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use crate::lanes_support::{Kernel, PRECISIONS, Precision, map_everywhere};
+use crate::lanes_support::{PRECISIONS, Precision, everywhere};
 
 fn expression(text: &str) -> Expression {
     parse(text, &[]).expect(text)
@@ -164,18 +162,6 @@ fn rules_of_differentiation_agree_with_differences() {
     }
 }
 
-struct Value(Expression);
-impl Kernel<3, 4> for Value {
-    #[inline(always)]
-    fn apply<L: Lanes>(&self, l: L, [x, y, z]: [L::Real; 3]) -> [L::Real; 4] {
-        let field = LaneField::<L::Scalar>::new(&self.0.tape);
-        let p = Vec3::new(x, y, z);
-        let [value] = field.values(l, [p], &mut Scratch::default());
-        let gradient = field.with_gradient(l, p).1;
-        [value, gradient.x, gradient.y, gradient.z]
-    }
-}
-
 /// Lanes of f64 give the bits of scalar f64, on every instruction set; those of f32 are near.
 #[test]
 fn lanes_compute_what_scalars_do() {
@@ -196,8 +182,11 @@ fn lanes_compute_what_scalars_do() {
                     DVec3::from_array(p.to_array().map(|x| precision.rounded(x)))
                 })
                 .collect();
-            let columns = [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).collect());
-            let found = map_everywhere(precision, &Value(expression), &columns);
+            let columns =
+                [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).collect::<Vec<f64>>());
+            let [x, y, z] = &columns;
+            let tape = &expression.tape;
+            let found = everywhere(|set| values_and_gradients(set, precision, tape, [x, y, z]));
             for (i, p) in points.into_iter().enumerate() {
                 let (value, gradient) = (field.value(p), field.gradient(p));
                 let wanted = [value, gradient.x, gradient.y, gradient.z];

@@ -3,13 +3,11 @@
 
 use std::f64::consts::TAU;
 
-use etalon::inside::math::functions::{atan2_turns, ln, sin_cos_turns};
-use etalon::inside::math::lanes::{Int, Lanes, Mask, Real, Scalar};
-use etalon::inside::math::vec3::Vec3;
+use etalon_doors::{functions, words};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use crate::lanes_support::{Job, Kernel, PRECISIONS, Precision, map_everywhere, on_each};
+use crate::lanes_support::{PRECISIONS, Precision, everywhere, on_each};
 
 /// A unit in the last place of numbers in [1, 2).
 fn ulp_of_one(precision: Precision) -> f64 {
@@ -19,31 +17,6 @@ fn ulp_of_one(precision: Precision) -> f64 {
 /// Distance of neighbouring numbers at |x|, normal range.
 fn ulp(precision: Precision, x: f64) -> f64 {
     libm::exp2(libm::log2(x.abs()).floor()) * ulp_of_one(precision)
-}
-
-struct SinCos;
-impl Kernel<1, 2> for SinCos {
-    #[inline(always)]
-    fn apply<L: Lanes>(&self, l: L, [u]: [L::Real; 1]) -> [L::Real; 2] {
-        let (s, c) = sin_cos_turns(l, u);
-        [s, c]
-    }
-}
-
-struct Ln;
-impl Kernel<1, 1> for Ln {
-    #[inline(always)]
-    fn apply<L: Lanes>(&self, l: L, [x]: [L::Real; 1]) -> [L::Real; 1] {
-        [ln(l, x)]
-    }
-}
-
-struct Atan2;
-impl Kernel<2, 1> for Atan2 {
-    #[inline(always)]
-    fn apply<L: Lanes>(&self, l: L, [y, x]: [L::Real; 2]) -> [L::Real; 1] {
-        [atan2_turns(l, y, x)]
-    }
 }
 
 /// sin 2πu and cos 2πu to about 1e-16 relative: reduced exactly to an eighth of a turn, and 2π in
@@ -93,7 +66,7 @@ fn sine_and_cosine_are_within_their_bounds() {
         [(Precision::Single, 2.5, 1.0), (Precision::Double, 2.5, 1.0)]
     {
         let u = turns(precision);
-        let [s, c] = map_everywhere(precision, &SinCos, std::array::from_ref(&u));
+        let [s, c] = everywhere(|set| functions::sine_and_cosine(set, precision, [&u]));
         let (mut worst, mut worst_absolute) = (0.0_f64, 0.0_f64);
         for ((&u, &s), &c) in u.iter().zip(&s).zip(&c) {
             let (sine, cosine) = sin_cos_truth(u);
@@ -130,7 +103,7 @@ fn the_logarithm_is_within_its_bound() {
             x.extend([1.0 - away, 1.0 + away]);
         }
         let x: Vec<f64> = x.into_iter().map(|x| precision.rounded(x)).collect();
-        let [y] = map_everywhere(precision, &Ln, std::array::from_ref(&x));
+        let [y] = everywhere(|set| functions::logarithm(set, precision, [&x]));
         let mut worst = 0.0_f64;
         for (&x, &y) in x.iter().zip(&y) {
             let truth = libm::log(x);
@@ -166,7 +139,7 @@ fn the_angle_is_within_its_bound() {
                 add(y, x);
             }
         }
-        let [turns] = map_everywhere(precision, &Atan2, &[ys.clone(), xs.clone()]);
+        let [turns] = everywhere(|set| functions::angle(set, precision, [&ys, &xs]));
         let mut worst = 0.0_f64;
         for ((&y, &x), &turns) in ys.iter().zip(&xs).zip(&turns) {
             if (x, y) == (0.0, 0.0) {
@@ -183,19 +156,6 @@ fn the_angle_is_within_its_bound() {
         println!("{precision:?}: atan2 {worst} ulp of 1, in turns");
         // Absolute: small angles are differences from an eighth of a turn.
         assert!(worst <= bound, "{worst}");
-    }
-}
-
-struct Frames;
-impl Kernel<3, 12> for Frames {
-    #[inline(always)]
-    fn apply<L: Lanes>(&self, l: L, [x, y, z]: [L::Real; 3]) -> [L::Real; 12] {
-        let n = Vec3::new(x, y, z).normalized(l);
-        let (s, t) = n.frame(l);
-        let across = s.cross(t);
-        [
-            n.x, n.y, n.z, s.x, s.y, s.z, t.x, t.y, t.z, across.x, across.y, across.z,
-        ]
     }
 }
 
@@ -222,7 +182,8 @@ fn frames_are_orthonormal_and_right_handed() {
         add([0; 3].map(|_| rng.random_range(-1.0..1.0)));
     }
     for precision in PRECISIONS {
-        let out = map_everywhere(precision, &Frames, &columns);
+        let [x, y, z] = &columns;
+        let out = everywhere(|set| functions::frame(set, precision, [x, y, z]));
         let vector = |k: usize, i: usize| {
             glam::DVec3::new(out[3 * k][i], out[3 * k + 1][i], out[3 * k + 2][i])
         };
@@ -246,107 +207,59 @@ fn frames_are_orthonormal_and_right_handed() {
     }
 }
 
-/// Integer and conversion operations on nasty words: the words by operation, and the reals.
-struct Words;
-impl Job for Words {
-    type Output = ([Vec<u32>; 9], Vec<f64>);
-    fn run<L: Lanes>(&self, l: L) -> Self::Output {
-        let mut found = Self::Output::default();
-        let mut rng = Pcg64Mcg::seed_from_u64(3);
-        for round in 0..400 {
-            let mut words = |special: fn(usize) -> usize| -> [u32; 16] {
-                let of = |i| {
-                    if round == 0 {
-                        SPECIAL[special(i)]
-                    } else {
-                        rng.random()
-                    }
-                };
-                std::array::from_fn(of)
-            };
-            let (a, b) = (words(|i| i % 6), words(|i| i / 3));
-            for at in (0..16).step_by(L::COUNT) {
-                operate(l, &a[at..], &b[at..], &mut found);
+/// Integer and conversion operations on nasty words and on random ones.
+#[test]
+fn words_wrap_alike_in_every_kind_of_lane() {
+    const SPECIAL: [u32; 6] = [0, 1, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff, 0x00ff_ffff];
+    let mut rng = Pcg64Mcg::seed_from_u64(3);
+    let mut words = |special: fn(usize) -> usize| -> Vec<u32> {
+        let pairs = (0..36).map(|i| SPECIAL[special(i)]);
+        pairs.chain((36..6400).map(|_| rng.random())).collect()
+    };
+    let (a, b) = (words(|i| i % 6), words(|i| i / 6));
+    for (precision, bits) in [(Precision::Single, 24), (Precision::Double, 32)] {
+        let all = on_each(|set| words::operations(set, precision, &a, &b));
+        for (name, results) in &all {
+            check_words(&a, &b, bits, results);
+            assert!(results.same.iter().all(|same| *same));
+            for (column, first) in results.words.iter().zip(&all[0].1.words) {
+                assert_eq!(column, first, "{precision:?} on {name}");
             }
+            assert_eq!(results.uniform, all[0].1.uniform, "{precision:?} on {name}");
         }
-        found
     }
 }
 
-const SPECIAL: [u32; 6] = [0, 1, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff, 0x00ff_ffff];
-
-fn operate<L: Lanes>(l: L, a: &[u32], b: &[u32], found: &mut ([Vec<u32>; 9], Vec<f64>)) {
-    let (x, y) = (l.load_int(a), l.load_int(b));
+/// Results against those of plain integers; uniform variates keep so many bits.
+fn check_words(a: &[u32], b: &[u32], bits: i32, results: &words::Results) {
     type Word = fn(u32, u32) -> u32;
-    let results: [(L::Int, Word); 9] = [
-        (x.plus(y), u32::wrapping_add),
-        (x.minus(y), u32::wrapping_sub),
-        (x.times(y), u32::wrapping_mul),
-        (x.left(7), |a, _| a << 7),
-        (x.right(9), |a, _| a >> 9),
-        (x ^ y, |a, b| a ^ b),
-        (x & y, |a, b| a & b),
-        (x | y, |a, b| a | b),
-        (x.reversed(), |a, _| a.reverse_bits()),
+    let operations: [Word; 9] = [
+        u32::wrapping_add,
+        u32::wrapping_sub,
+        u32::wrapping_mul,
+        |a, _| a << 7,
+        |a, _| a >> 9,
+        |a, b| a ^ b,
+        |a, b| a & b,
+        |a, b| a | b,
+        |a, _| a.reverse_bits(),
     ];
-    for (k, (got, want)) in results.into_iter().enumerate() {
-        for i in 0..L::COUNT {
-            assert_eq!(l.int_lane(got, i), want(a[i], b[i]), "operation {k}");
-            found.0[k].push(l.int_lane(got, i));
+    for (i, (&a, &b)) in a.iter().zip(b).enumerate() {
+        for (k, (column, want)) in results.words.iter().zip(operations).enumerate() {
+            assert_eq!(column[i], want(a, b), "operation {k}");
         }
-    }
-    let below = x.below(y).bits();
-    let equal = x.same(x).bits();
-    assert_eq!(equal, ((1u64 << L::COUNT) - 1) as u32);
-    let uniform = l.uniform(x);
-    let real = l.to_real(x.right(8));
-    let back = l.truncate(real + l.real(0.0));
-    for (i, &a) in a.iter().enumerate().take(L::COUNT) {
-        assert_eq!(below >> i & 1 == 1, a < b[i]);
-        let u = l.lane(uniform, i).to_f64();
+        assert_eq!(results.below[i], a < b);
+        let u = results.uniform[i];
         assert!((0.0..1.0).contains(&u));
         // Rounded down, by less than the last bit kept.
         let exact = f64::from(a) / 4_294_967_296.0;
-        assert!(u <= exact && exact - u < libm::exp2(-f64::from(L::UNIFORM_BITS)));
-        assert_eq!(l.lane(real, i).to_f64(), f64::from(a >> 8));
-        assert_eq!(l.int_lane(back, i), a >> 8);
-        found.1.push(u);
+        assert!(u <= exact && exact - u < libm::exp2(-f64::from(bits)));
+        assert_eq!(results.reals[i], f64::from(a >> 8));
+        assert_eq!(results.truncated[i], a >> 8);
     }
-}
-
-#[test]
-fn words_wrap_alike_in_every_kind_of_lane() {
-    let mut words = Vec::new();
-    for precision in PRECISIONS {
-        let results = on_each(precision, &Words);
-        for (name, result) in &results[1..] {
-            assert_eq!(result, &results[0].1, "{precision:?} on {name}");
-        }
-        words.extend(results.into_iter().take(1).map(|(_, (words, _))| words));
-    }
-    assert_eq!(words[0], words[1]);
 }
 
 /// Comparison, min, max, rounding with NaN, infinities and signed zeros.
-struct Odd;
-impl Kernel<2, 9> for Odd {
-    #[inline(always)]
-    fn apply<L: Lanes>(&self, l: L, [a, b]: [L::Real; 2]) -> [L::Real; 9] {
-        let truth = |m| l.select(m, l.real(1.0), l.real(0.0));
-        [
-            a.min(b),
-            a.max(b),
-            a.floor(),
-            a.round(),
-            a.copysign(b),
-            truth(a.lt(b)),
-            truth(a.le(b)),
-            truth(a.same(b)),
-            a.mul_add(b, a),
-        ]
-    }
-}
-
 #[test]
 fn odd_numbers_are_treated_alike() {
     let odd = [
@@ -369,7 +282,8 @@ fn odd_numbers_are_treated_alike() {
         }
     }
     for precision in PRECISIONS {
-        let [min, max, floor, round, ..] = map_everywhere(precision, &Odd, &[a.clone(), b.clone()]);
+        let [min, max, floor, round, ..] =
+            everywhere(|set| functions::operations(set, precision, [&a, &b]));
         for (i, (&a, &b)) in a.iter().zip(&b).enumerate() {
             let (a, b) = (precision.rounded(a), precision.rounded(b));
             let expect =

@@ -8,16 +8,16 @@
 
 use std::collections::HashMap;
 
+use etalon::Instructions;
 use etalon::inside::math::affine::Affine;
-use etalon::inside::math::lanes::{Lanes, Mask, Scalar};
-use etalon::inside::math::vec3::Vec3;
-use etalon::inside::shape::lanes::{LaneRay, LaneShape};
+use etalon::inside::math::lanes::Scalar;
 use etalon::inside::shape::{Placed, Ray, ShapeKind, Tally};
+use etalon_doors::shapes::{RaySpan, spans};
 use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use crate::lanes_support::{Job, PRECISIONS, Precision, best, on_each};
+use crate::lanes_support::{PRECISIONS, Precision, on_each, same_bits};
 use crate::shape_ladder::{KINDS, critical_point, cubed, decade, matrix};
 
 /// One ray against one shape, in f64.
@@ -26,56 +26,10 @@ struct Case {
     ray: Ray,
 }
 
-/// What lanes say of a case, with the ray as it was rounded.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Answer {
-    ray: Ray,
-    near: [f64; 2],
-    far: [f64; 2],
-    hit: bool,
-    miss: bool,
-}
-
-struct Spans<'a>(&'a [Case]);
-
-impl Job for Spans<'_> {
-    type Output = Vec<Answer>;
-    fn run<L: Lanes>(&self, l: L) -> Vec<Answer> {
-        let mut answers = Vec::new();
-        for case in self.0 {
-            let shape = LaneShape::<L::Scalar>::new(
-                Some(case.placed.kind()),
-                case.placed.to_world(),
-                &case.placed.inverse(),
-                case.ray.origin.abs().max_element(),
-            );
-            let span = l.vectorize(
-                #[inline(always)]
-                || {
-                    let ray = LaneRay::<L>::new(
-                        l,
-                        Vec3::splat(l, case.ray.origin),
-                        Vec3::splat(l, case.ray.direction),
-                    );
-                    shape.span(l, &ray, l.mask(true), l.real(f64::INFINITY))
-                },
-            );
-            let lane = |x| l.lane(x, 0).to_f64();
-            let rounded =
-                |v: DVec3| DVec3::from_array(v.to_array().map(|x| L::Scalar::from_f64(x).to_f64()));
-            answers.push(Answer {
-                ray: Ray {
-                    origin: rounded(case.ray.origin),
-                    direction: rounded(case.ray.direction),
-                },
-                near: [lane(span.near.low), lane(span.near.high)],
-                far: [lane(span.far.low), lane(span.far.high)],
-                hit: span.hit.any(),
-                miss: span.miss.any(),
-            });
-        }
-        answers
-    }
+/// What lanes say of cases on an instruction set.
+fn ask(set: Instructions, precision: Precision, cases: &[Case]) -> Vec<RaySpan> {
+    let cases: Vec<_> = cases.iter().map(|case| (&case.placed, case.ray)).collect();
+    spans(set, precision, &cases)
 }
 
 /// How far the truth is from the middle of an enclosure, in units of half its width; the truth
@@ -96,7 +50,7 @@ struct Record {
 }
 
 impl Record {
-    fn check(&mut self, case: &Case, answer: &Answer) {
+    fn check(&mut self, case: &Case, answer: &RaySpan) {
         if !answer.ray.is_valid() {
             return;
         }
@@ -132,7 +86,10 @@ impl Record {
 
     fn check_all(cases: &[Case], precision: Precision) -> Self {
         let mut record = Self::default();
-        for (case, answer) in cases.iter().zip(best(precision, &Spans(cases))) {
+        for (case, answer) in cases
+            .iter()
+            .zip(ask(Instructions::best(), precision, cases))
+        {
             record.check(case, &answer);
         }
         record
@@ -336,16 +293,15 @@ fn ordinary_rays_are_nearly_always_decided() {
 fn all_instruction_sets_give_the_same_spans() {
     for precision in PRECISIONS {
         let cases = nasty_cases(precision, 4, 1_500);
-        let all = on_each(precision, &Spans(&cases));
+        let all = on_each(|set| ask(set, precision, &cases));
         for (name, answers) in &all[1..] {
             for (a, b) in all[0].1.iter().zip(answers) {
-                let same = |x: f64, y: f64| crate::lanes_support::same_bits(x, y);
                 assert!(
                     (a.hit, a.miss) == (b.hit, b.miss)
-                        && same(a.near[0], b.near[0])
-                        && same(a.near[1], b.near[1])
-                        && same(a.far[0], b.far[0])
-                        && same(a.far[1], b.far[1]),
+                        && same_bits(a.near[0], b.near[0])
+                        && same_bits(a.near[1], b.near[1])
+                        && same_bits(a.far[0], b.far[0])
+                        && same_bits(a.far[1], b.far[1]),
                     "{name}: {a:?} {b:?}"
                 );
             }
@@ -357,7 +313,10 @@ fn all_instruction_sets_give_the_same_spans() {
 fn a_wrong_span_is_noticed() {
     let cases = nasty_cases(Precision::Double, 9, 300);
     let mut record = Record::default();
-    for (case, mut answer) in cases.iter().zip(best(Precision::Double, &Spans(&cases))) {
+    for (case, mut answer) in cases
+        .iter()
+        .zip(ask(Instructions::best(), Precision::Double, &cases))
+    {
         // A bound a million times too small, as of a forgotten term.
         for [low, high] in [&mut answer.near, &mut answer.far] {
             let (middle, half) = ((*low + *high) / 2.0, (*high - *low) / 2.0);
@@ -367,7 +326,10 @@ fn a_wrong_span_is_noticed() {
     }
     assert!(record.wrong.len() > 10, "{}", record.wrong.len());
     let mut record = Record::default();
-    for (case, mut answer) in cases.iter().zip(best(Precision::Double, &Spans(&cases))) {
+    for (case, mut answer) in cases
+        .iter()
+        .zip(ask(Instructions::best(), Precision::Double, &cases))
+    {
         (answer.hit, answer.miss) = (answer.miss, answer.hit);
         record.check(case, &answer);
     }

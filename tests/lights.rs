@@ -8,16 +8,18 @@
 
 use std::f64::consts::PI;
 
+use etalon::Instructions;
 use etalon::inside::light::{
     CubeLight, CylinderLight, LightShape, MappedLight, PlanarLight, RectangleLight, SphereLight,
 };
-use etalon::inside::math::lanes::{Lanes, Mask, Scalar};
-use etalon::inside::math::vec3::Vec3;
+use etalon::inside::math::lanes::Scalar;
+use etalon_doors::Made;
+use etalon_doors::lights::{AnyLight, LightSample, light_densities, light_samples};
 use glam::{DMat3, DVec3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use crate::lanes_support::{Job, PRECISIONS, Precision, best, on_each, same_bits};
+use crate::lanes_support::{PRECISIONS, Precision, on_each, same_bits};
 use crate::statistics_support::{chi_square, t_test};
 use crate::truth_file::truth;
 use etalon::inside::stats::family::sidak;
@@ -71,6 +73,14 @@ impl Light {
                 LightShape::Mapped(MappedLight::cylinder(centre, linear(half), both))
             }
             Self::Point(at) => LightShape::Point(at.to_array().map(T::from_f64)),
+        }
+    }
+
+    /// What comes of it in a precision.
+    fn ask<R>(&self, precision: Precision, ask: impl Fn(AnyLight) -> R) -> R {
+        match precision {
+            Precision::Single => ask(Made::Single(&self.build())),
+            Precision::Double => ask(Made::Double(&self.build())),
         }
     }
 
@@ -205,83 +215,41 @@ fn cube_normals(half: [DVec3; 3]) -> [DVec3; 3] {
     })
 }
 
-/// One sample, exactly as the lanes have it, with the density that a scattered ray of that very
-/// direction would be given, its hit's normal being `wobble` units of roundoff off.
-#[derive(Debug, Clone, Copy)]
-struct Drawn {
-    direction: DVec3,
-    distance: f64,
-    pdf: f64,
-    asked: f64,
-    valid: bool,
+/// Samples of a light from p.
+fn draw(
+    set: Instructions,
+    precision: Precision,
+    (light, p): (Light, DVec3),
+    variates: &[[f64; 2]],
+) -> Vec<LightSample> {
+    // Below 1 in this precision, too.
+    let most = 1.0 - 2.0 * precision.roundoff();
+    let variates: Vec<_> = variates.iter().map(|uv| uv.map(|x| x.min(most))).collect();
+    light.ask(precision, |light| light_samples(set, light, p, &variates))
 }
 
-struct Draw<'a> {
-    light: Light,
-    p: DVec3,
-    variates: &'a [[f64; 2]],
+/// The same on the best instruction set.
+fn best(precision: Precision, from: (Light, DVec3), variates: &[[f64; 2]]) -> Vec<LightSample> {
+    draw(Instructions::best(), precision, from, variates)
 }
 
-impl Job for Draw<'_> {
-    type Output = Vec<Drawn>;
-    fn run<L: Lanes>(&self, l: L) -> Vec<Drawn> {
-        let light = self.light.build::<L::Scalar>();
-        let mut all = Vec::with_capacity(self.variates.len());
-        let rounded =
-            |v: DVec3| DVec3::from_array(v.to_array().map(|x| L::Scalar::from_f64(x).to_f64()));
-        let p = rounded(self.p);
-        for chunk in self.variates.chunks(L::COUNT) {
-            let mut uv = [[L::Scalar::default(); 16]; 2];
-            for (i, pair) in chunk.iter().enumerate() {
-                // Below 1 in this precision, too.
-                let most = 1.0 - 2.0 * L::Scalar::ROUNDOFF;
-                uv[0][i] = L::Scalar::from_f64(pair[0].min(most));
-                uv[1][i] = L::Scalar::from_f64(pair[1].min(most));
-            }
-            let towards = l.vectorize(
-                #[inline(always)]
-                || {
-                    let pair = [l.load(&uv[0]), l.load(&uv[1])];
-                    light.sample(l, Vec3::splat(l, self.p), pair)
-                },
-            );
-            let d = towards.direction;
-            // The hit of that direction, found in f64 for the rounded direction; the normal in
-            // this precision.
-            let mut normals = [[L::Scalar::default(); 16]; 3];
-            for i in 0..chunk.len() {
-                let at = |x| l.lane(x, i).to_f64();
-                let direction = DVec3::new(at(d.x), at(d.y), at(d.z));
-                let near = p + at(towards.distance) * direction;
-                let normal = self.light.normal_near(near);
-                for (n, x) in normals.iter_mut().zip(normal.to_array()) {
-                    n[i] = L::Scalar::from_f64(x);
-                }
-            }
-            let [nx, ny, nz] = &normals;
-            let asked = l.vectorize(
-                #[inline(always)]
-                || {
-                    let normal = Vec3::new(l.load(nx), l.load(ny), l.load(nz));
-                    // As a surface's normal after its own roundings.
-                    let normal = normal.scale(l.real(1.0 + 3.0 * L::Scalar::ROUNDOFF));
-                    light.pdf(l, Vec3::splat(l, self.p), d, normal.normalized(l))
-                },
-            );
-            let valid = towards.valid.bits();
-            for i in 0..chunk.len() {
-                let at = |x| l.lane(x, i).to_f64();
-                all.push(Drawn {
-                    direction: DVec3::new(at(d.x), at(d.y), at(d.z)),
-                    distance: at(towards.distance),
-                    pdf: at(towards.pdf),
-                    asked: at(asked),
-                    valid: valid >> i & 1 == 1,
-                });
-            }
-        }
-        all
-    }
+/// The densities that scattered rays of the very directions of samples would be given, their hits'
+/// normals being some units of roundoff off.
+fn asked(
+    set: Instructions,
+    precision: Precision,
+    (light, p): (Light, DVec3),
+    samples: &[LightSample],
+) -> Vec<f64> {
+    let start = DVec3::from_array(p.to_array().map(|x| precision.rounded(x)));
+    let hit = |sample: &LightSample| {
+        // Found in f64 for the rounded direction.
+        let near = start + sample.distance * sample.direction;
+        let normal = light.normal_near(near) * (1.0 + 3.0 * precision.roundoff());
+        (sample.direction, normal)
+    };
+    let hits: Vec<_> = samples.iter().map(hit).collect();
+    light.ask(precision, |light| light_densities(set, light, p, &hits))
 }
 
 impl Light {
@@ -452,20 +420,14 @@ fn both_strategies_see_the_same_density() {
         for (light, receivers) in settings() {
             for p in receivers {
                 let variates = variates(&mut rng, 64);
-                let drawn = best(
-                    precision,
-                    &Draw {
-                        light,
-                        p,
-                        variates: &variates,
-                    },
-                );
-                for sample in &drawn {
+                let drawn = best(precision, (light, p), &variates);
+                let asked = asked(Instructions::best(), precision, (light, p), &drawn);
+                for (sample, asked) in drawn.iter().zip(asked) {
                     assert!(sample.valid && sample.pdf > 0.0, "{light:?} {p} {sample:?}");
                     // Not within 1e-5 of each other but equal: they are the same function.
                     assert!(
-                        same_bits(sample.pdf, sample.asked),
-                        "{precision:?} {light:?} {p} {sample:?}"
+                        same_bits(sample.pdf, asked),
+                        "{precision:?} {light:?} {p} {sample:?} {asked}"
                     );
                 }
             }
@@ -483,14 +445,7 @@ fn densities_are_those_of_the_geometry() {
             for p in receivers {
                 let p = DVec3::from_array(p.to_array().map(|x| precision.rounded(x)));
                 let variates = variates(&mut rng, 32);
-                for sample in best(
-                    precision,
-                    &Draw {
-                        light,
-                        p,
-                        variates: &variates,
-                    },
-                ) {
+                for sample in best(precision, (light, p), &variates) {
                     let Some((t, normal)) = light.hit(p, sample.direction.normalize()) else {
                         // Rounded past the edge.
                         continue;
@@ -567,46 +522,6 @@ impl Bins {
     }
 }
 
-/// `pdf` asked in f64 for many directions that hit.
-struct Ask<'a> {
-    light: Light,
-    p: DVec3,
-    directions: &'a [(DVec3, DVec3)],
-}
-
-impl Job for Ask<'_> {
-    type Output = Vec<f64>;
-    fn run<L: Lanes>(&self, l: L) -> Vec<f64> {
-        let light = self.light.build::<L::Scalar>();
-        let mut all = Vec::with_capacity(self.directions.len());
-        for chunk in self.directions.chunks(L::COUNT) {
-            let mut columns = [[L::Scalar::default(); 16]; 6];
-            for (i, (d, n)) in chunk.iter().enumerate() {
-                for (column, x) in columns.iter_mut().zip([d.x, d.y, d.z, n.x, n.y, n.z]) {
-                    column[i] = L::Scalar::from_f64(x);
-                }
-            }
-            let pdf = l.vectorize(
-                #[inline(always)]
-                || {
-                    let x: [L::Real; 6] = std::array::from_fn(
-                        #[inline(always)]
-                        |k| l.load(&columns[k]),
-                    );
-                    light.pdf(
-                        l,
-                        Vec3::splat(l, self.p),
-                        Vec3::new(x[0], x[1], x[2]),
-                        Vec3::new(x[3], x[4], x[5]),
-                    )
-                },
-            );
-            all.extend((0..chunk.len()).map(|i| l.lane(pdf, i).to_f64()));
-        }
-        all
-    }
-}
-
 /// What one setting says: the integral of the density with its quadrature's error, and the p-value
 /// of χ² of drawn directions against it.
 struct Verdict {
@@ -624,14 +539,7 @@ fn verdict(
     bend: impl Fn([f64; 2]) -> [f64; 2],
 ) -> Verdict {
     let samples: Vec<[f64; 2]> = independent(rng, 40_000).into_iter().map(bend).collect();
-    let drawn = best(
-        precision,
-        &Draw {
-            light,
-            p,
-            variates: &samples,
-        },
-    );
+    let drawn = best(precision, (light, p), &samples);
     let axis: DVec3 = drawn.iter().map(|s| s.direction).sum();
     let axis = axis.try_normalize().unwrap_or(DVec3::Z);
     // A cone that covers every direction to the light.
@@ -656,14 +564,9 @@ fn verdict(
             }
         }
     }
-    let densities = best(
-        Precision::Double,
-        &Ask {
-            light,
-            p,
-            directions: &directions,
-        },
-    );
+    let densities = light.ask(Precision::Double, |light| {
+        light_densities(Instructions::best(), light, p, &directions)
+    });
     let cell = 2.0 * PI * bins.height / (rows * columns) as f64;
     let mut expected = vec![0.0; bins.rows * bins.columns];
     for (&place, &pdf) in place.iter().zip(&densities) {
@@ -755,14 +658,7 @@ fn grazing_receivers_see_all_of_a_flat_light_alike() {
             let normal = half[0].cross(half[1]);
             for p in receivers {
                 let variates = independent(&mut rng, 20_000);
-                let drawn = best(
-                    precision,
-                    &Draw {
-                        light,
-                        p,
-                        variates: &variates,
-                    },
-                );
+                let drawn = best(precision, (light, p), &variates);
                 let mut counts = vec![0; 144];
                 for sample in &drawn {
                     let at = p + sample.distance * sample.direction - centre;
@@ -826,14 +722,9 @@ fn a_rectangle_knows_its_solid_angle() {
                 ((centre - p).normalize(), DVec3::Z),
                 ((centre + half[0] + half[1] - p).normalize(), DVec3::Z),
             ];
-            let pdf = best(
-                precision,
-                &Ask {
-                    light,
-                    p,
-                    directions: &directions,
-                },
-            );
+            let pdf = light.ask(precision, |light| {
+                light_densities(Instructions::best(), light, p, &directions)
+            });
             if pdf[0] != pdf[1] {
                 continue;
             }
@@ -851,14 +742,7 @@ fn irradiances(light: Light, (p, n): (DVec3, DVec3), precision: Precision, seed:
     (0..64)
         .map(|_| {
             let variates = variates(&mut rng, 48);
-            let drawn = best(
-                precision,
-                &Draw {
-                    light,
-                    p,
-                    variates: &variates,
-                },
-            );
+            let drawn = best(precision, (light, p), &variates);
             let sum: f64 = drawn
                 .iter()
                 .filter(|s| s.valid)
@@ -1010,14 +894,7 @@ fn points_fall_off_with_the_square() {
         for row in t["exact"]["per_point"].as_array().unwrap() {
             let light = Light::Point(DVec3::new(0.0, 0.0, number(&t["setup"]["h"])));
             let p = DVec3::new(number(&row["x"]), 0.0, 0.0);
-            let drawn = best(
-                precision,
-                &Draw {
-                    light,
-                    p,
-                    variates: &[[0.5, 0.5]],
-                },
-            );
+            let drawn = best(precision, (light, p), &[[0.5, 0.5]]);
             let irradiance = number(&t["setup"]["I"]) * drawn[0].direction.z / drawn[0].pdf;
             let error = (irradiance / number(&row["E"]) - 1.0).abs();
             assert!(error < 6.0 * precision.roundoff(), "{error:e}");
@@ -1032,19 +909,17 @@ fn all_instruction_sets_draw_the_same_bits() {
         for (light, receivers) in settings() {
             for p in receivers {
                 let variates = variates(&mut rng, 8);
-                let all = on_each(
-                    precision,
-                    &Draw {
-                        light,
-                        p,
-                        variates: &variates,
-                    },
-                );
+                let from = (light, p);
+                let all = on_each(|set| {
+                    let samples = draw(set, precision, from, &variates);
+                    let asked = asked(set, precision, from, &samples);
+                    samples.into_iter().zip(asked).collect::<Vec<_>>()
+                });
                 for (name, other) in &all[1..] {
-                    for (a, b) in all[0].1.iter().zip(other) {
+                    for ((a, a_asked), (b, b_asked)) in all[0].1.iter().zip(other) {
                         let same = a.valid == b.valid
                             && same_bits(a.pdf, b.pdf)
-                            && same_bits(a.asked, b.asked)
+                            && same_bits(*a_asked, *b_asked)
                             && same_bits(a.distance, b.distance)
                             && a.direction == b.direction;
                         assert!(same, "{name} {light:?}: {a:?} {b:?}");

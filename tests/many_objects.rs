@@ -7,25 +7,24 @@
 
 use std::path::Path;
 
-use etalon::inside::integrate::intersect::{Leaving, NOTHING, Rungs, Shadow, nearest, occluded};
+use etalon::inside::integrate::intersect::NOTHING;
 use etalon::inside::integrate::model::{Many, Model};
-use etalon::inside::math::lanes::{Lanes, Mask, Scalar, WIDEST};
-use etalon::inside::math::twice::Twice;
-use etalon::inside::math::vec3::Vec3;
+use etalon::inside::math::lanes::Scalar;
 use etalon::inside::plan::build::{LARGEST_LIST, build};
 use etalon::inside::plan::choose::choose;
 use etalon::inside::plan::extent::{about_camera, bounds};
 use etalon::inside::scene;
+use etalon::inside::shape::Ray;
 use etalon::inside::shape::hierarchy::Item;
-use etalon::inside::shape::lanes::LaneRay;
-use etalon::inside::shape::lanes::balls::Balls;
 use etalon::inside::spectrum::grid::WavelengthGrid;
-use etalon::{Overrides, Scene};
+use etalon::{Instructions, Overrides, Scene};
+use etalon_doors::Made;
+use etalon_doors::models::{self, Answer, AnyModel, Asking, Question};
 use glam::DVec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use crate::lanes_support::{Job, PRECISIONS, on_each};
+use crate::lanes_support::{PRECISIONS, Precision, on_each};
 use crate::shape_ladder::cubed;
 
 const HEAD: &str = r#"
@@ -120,125 +119,96 @@ enum Way {
     Wide,
 }
 
-/// One ray's answers: t, part, and whether a shadow ray of that direction is blocked.
-type Answer = (f64, u32, bool);
-
-struct Questions<'a> {
-    scene: &'a Scene,
-    way: Way,
-    rays: usize,
+/// The tables of a scene in a precision.
+fn model<T: Scalar>(scene: &Scene) -> Model<T> {
+    let choices = choose(scene, false).unwrap();
+    build(scene, &choices, &WavelengthGrid::default())
+        .unwrap()
+        .0
 }
 
-impl Job for Questions<'_> {
-    type Output = Vec<Answer>;
-    fn run<L: Lanes>(&self, l: L) -> Vec<Answer> {
-        let choices = choose(self.scene, false).unwrap();
-        let (mut model, _) =
-            build::<L::Scalar>(self.scene, &choices, &WavelengthGrid::default()).unwrap();
-        let mut items = items(self.scene);
-        if self.way == Way::Broken {
-            items.truncate(items.len() - items.len() / 8);
-        }
-        let many = || Many::new(&items, vec![0], &model.shapes, &model.occluders.objects);
-        model.hierarchy = (self.way != Way::List).then(many);
-        let rays = rays(self.rays);
-        if self.way == Way::Wide {
-            answers(Twice(l), &model, &rays)
-        } else {
-            answers(l, &model, &rays)
-        }
+/// The same for one way.
+fn model_for<T: Scalar>(scene: &Scene, way: Way) -> Model<T> {
+    let mut model = model(scene);
+    let mut items = items(scene);
+    if way == Way::Broken {
+        items.truncate(items.len() - items.len() / 8);
+    }
+    let many = || Many::new(&items, vec![0], &model.shapes, &model.occluders.objects);
+    model.hierarchy = (way != Way::List).then(many);
+    model
+}
+
+/// Answers on every instruction set.
+fn asked(
+    scene: &Scene,
+    way: Way,
+    precision: Precision,
+    rays: &[Ray],
+) -> Vec<(&'static str, Vec<Answer>)> {
+    let ask = |model: AnyModel| on_each(|set| answers(set, model, way, rays));
+    match precision {
+        Precision::Single => ask(Made::Single(&model_for(scene, way))),
+        Precision::Double => ask(Made::Double(&model_for(scene, way))),
     }
 }
 
-/// Origins, directions: anything, and along the axes through the grid of balls.
-fn rays(count: usize) -> Vec<[DVec3; 2]> {
+/// Anything, and along the axes through the grid of balls.
+fn rays(count: usize) -> Vec<Ray> {
     let mut rng = Pcg64Mcg::seed_from_u64(5);
-    let any = |rng: &mut Pcg64Mcg| {
-        let from = 4.0 * cubed(rng);
-        [from, (2.0 * cubed(rng) - from).normalize()]
+    let mut ray = |i: usize| {
+        if i.is_multiple_of(8) {
+            let axis = rng.random_range(0..3);
+            let mut origin = (4.0 * cubed(&mut rng)).round() / 4.0;
+            origin[axis] = 4.0;
+            let direction = -DVec3::AXES[axis];
+            return Ray { origin, direction };
+        }
+        let origin = 4.0 * cubed(&mut rng);
+        let direction = (2.0 * cubed(&mut rng) - origin).normalize();
+        Ray { origin, direction }
     };
-    (0..count)
-        .map(|i| match i % 8 {
-            0 => {
-                let axis = rng.random_range(0..3);
-                let mut from = (4.0 * cubed(&mut rng)).round() / 4.0;
-                from[axis] = 4.0;
-                [from, -DVec3::AXES[axis]]
-            }
-            _ => any(&mut rng),
-        })
-        .collect()
+    (0..count).map(&mut ray).collect()
 }
 
 /// The answers for all rays, and then for as many that leave the objects hit, inward or outward.
-fn answers<L: Lanes>(l: L, model: &Model<L::Scalar>, rays: &[[DVec3; 2]]) -> Vec<Answer> {
-    let mut answers = [Vec::new(), Vec::new()];
-    for (number, packet) in rays.chunks(L::COUNT).enumerate() {
-        let mut leaving = [NOTHING; WIDEST];
-        let mut rays = packet.to_vec();
-        // Every other ray goes inward, however many there are to a packet.
-        let every_other = 0x5555_5555_u32 << (number * L::COUNT % 2);
-        for (answers, inward) in answers.iter_mut().zip([0, every_other]) {
-            let found = ask(l, model, &rays, &leaving, inward);
-            for (i, (t, part, _)) in found.iter().enumerate() {
-                leaving[i] = model
-                    .parts
-                    .entries
-                    .get(*part as usize)
-                    .map_or(NOTHING, |part| part.object);
-                if t.is_finite() {
-                    let [from, direction] = rays[i];
-                    rays[i] = [from + *t * direction, turned(direction)];
-                }
-            }
-            answers.extend(found);
+fn answers(set: Instructions, model: AnyModel, way: Way, rays: &[Ray]) -> Vec<Answer> {
+    let asking = Asking {
+        twice: way == Way::Wide,
+        limit: 2.5,
+        except: 1,
+    };
+    let first: Vec<Question> = rays.iter().map(|&ray| free(ray)).collect();
+    let mut all = models::answers(set, model, &first, asking);
+    let leaves = |(i, (ray, answer)): (usize, (&Ray, &Answer))| {
+        let hit = answer.t.is_finite();
+        Question {
+            ray: if hit { turned(ray, answer.t) } else { *ray },
+            leaving: answer.object,
+            inward: i.is_multiple_of(2),
         }
-    }
-    answers.concat()
+    };
+    let second: Vec<Question> = rays.iter().zip(&all).enumerate().map(leaves).collect();
+    all.extend(models::answers(set, model, &second, asking));
+    all
 }
 
-fn turned(v: DVec3) -> DVec3 {
-    DVec3::new(v.y, v.z, v.x)
-}
-
-fn ask<L: Lanes>(
-    l: L,
-    model: &Model<L::Scalar>,
-    rays: &[[DVec3; 2]],
-    leaving: &[u32; WIDEST],
-    inward: u32,
-) -> Vec<Answer> {
-    let column = |which: usize, axis: usize| {
-        let mut column = [L::Scalar::from_f64(1.0); WIDEST];
-        for (place, ray) in column.iter_mut().zip(rays) {
-            *place = L::Scalar::from_f64(ray[which][axis]);
-        }
-        l.load(&column)
-    };
-    let vector = |which| Vec3::new(column(which, 0), column(which, 1), column(which, 2));
-    let ray = LaneRay::new(l, vector(0), vector(1));
-    let leaving = Leaving {
-        object: l.load_int(leaving),
-        inward: l.mask_from_bits(inward & (u32::MAX >> (WIDEST - L::COUNT))),
-    };
-    let active = l.mask_from_bits(u32::MAX >> (WIDEST - rays.len()));
-    let mut rungs = Rungs::default();
-    let found = nearest(l, model, &ray, &leaving, active, &mut rungs);
-    let shadow = Shadow {
+/// A ray that leaves nothing.
+fn free(ray: Ray) -> Question {
+    Question {
         ray,
-        limit: l.real(2.5),
-        except: l.int(1),
-    };
-    let blocked = occluded(l, model, &shadow, &leaving, active, &mut rungs).bits();
-    (0..rays.len())
-        .map(|i| {
-            (
-                l.lane(found.t, i).to_f64(),
-                l.int_lane(found.part, i),
-                blocked >> i & 1 == 1,
-            )
-        })
-        .collect()
+        leaving: NOTHING,
+        inward: false,
+    }
+}
+
+/// From where a ray arrives, in another direction.
+fn turned(ray: &Ray, t: f64) -> Ray {
+    let v = ray.direction;
+    Ray {
+        origin: ray.origin + t * v,
+        direction: DVec3::new(v.y, v.z, v.x),
+    }
 }
 
 /// Both rungs are the same arithmetic on the same rays by either way. Only what stands for a rival
@@ -250,18 +220,12 @@ fn hierarchy_and_list_see_the_same() {
         let scene = cloud(balls, others);
         assert!(balls + 5 * others > LARGEST_LIST);
         for precision in PRECISIONS {
-            let rays = 2000;
-            let ask = |way| {
-                let questions = Questions {
-                    scene: &scene,
-                    way,
-                    rays,
-                };
-                on_each(precision, &questions)
-            };
+            let rays = rays(2000);
+            let ask = |way| asked(&scene, way, precision, &rays);
             let list = ask(Way::List).swap_remove(0).1;
-            assert!(list.iter().filter(|answer| answer.1 != NOTHING).count() > rays / 2);
-            assert!(list.iter().filter(|answer| answer.2).count() > rays / 8);
+            let hits = list.iter().filter(|answer| answer.part != NOTHING);
+            assert!(hits.count() > rays.len() / 2);
+            assert!(list.iter().filter(|answer| answer.blocked).count() > rays.len() / 8);
             for way in [Way::Hierarchy, Way::Wide] {
                 for (name, answers) in ask(way) {
                     for (i, (a, b)) in list.iter().zip(&answers).enumerate() {
@@ -275,61 +239,46 @@ fn hierarchy_and_list_see_the_same() {
     }
 }
 
-/// Rays from farther away than the bounds of the quick question hold: `aimed` through the inner
-/// nine tenths of a ball each, or past all of them by a diameter.
-struct FromAfar<'a> {
-    scene: &'a Scene,
-    aimed: bool,
-}
-
 const BALLS: u32 = 16;
 
-impl Job for FromAfar<'_> {
-    type Output = Vec<(u32, u32)>;
-    /// The ball aimed at, and the set of balls that the ray is said to come near.
-    fn run<L: Lanes>(&self, l: L) -> Self::Output {
-        let choices = choose(self.scene, false).unwrap();
-        let grid = WavelengthGrid::default();
-        let (model, _) = build::<L::Scalar>(self.scene, &choices, &grid).unwrap();
-        let objects: Vec<u32> = (0..BALLS).collect();
-        let balls = Balls::new(&objects, &model.shapes).unwrap();
-        let mut rng = Pcg64Mcg::seed_from_u64(11);
-        let mut answers = Vec::new();
-        for _ in 0..2000 {
-            let ball = rng.random_range(0..BALLS);
-            let (centre, radius) = self.ball(ball);
-            let offset = if self.aimed {
-                0.9 * radius * cubed(&mut rng) / 3f64.sqrt()
-            } else {
-                DVec3::new(0.0, 0.0, 2.0 + 2.0 * radius)
-            };
-            let mut from = cubed(&mut rng).normalize();
-            if !self.aimed {
-                from.z = 0.0;
-                from = from.normalize();
-            }
-            // Rounded numbers aim within 2 u of this distance, 2e-3 in single precision.
-            let far = 10f64.powf(rng.random_range(2.0..4.0));
-            let ray = [centre + offset + far * from, -from];
-            let vector = |which: usize| {
-                let v: DVec3 = ray[which];
-                let [x, y, z] = v.to_array().map(|x| l.real(x));
-                Vec3::new(x, y, z)
-            };
-            let ray = LaneRay::new(l, vector(0), vector(1));
-            let near = balls.near(l, &ray, [l.int(u32::MAX)], l.real(f64::INFINITY));
-            answers.push((ball, l.int_lane(near, 0)));
+/// Rays from farther away than the bounds of the quick question hold, each with a ball: `aimed`
+/// through its inner nine tenths, or past all balls by a diameter.
+fn from_afar(scene: &Scene, aimed: bool) -> Vec<(u32, Ray)> {
+    let mut rng = Pcg64Mcg::seed_from_u64(11);
+    let mut ray = |_| {
+        let ball = rng.random_range(0..BALLS);
+        let rows = about_camera(scene, &scene.objects[ball as usize].value).rows;
+        let centre = DVec3::new(rows[0][3], rows[1][3], rows[2][3]);
+        let radius = rows[0][0];
+        let offset = if aimed {
+            0.9 * radius * cubed(&mut rng) / 3f64.sqrt()
+        } else {
+            DVec3::new(0.0, 0.0, 2.0 + 2.0 * radius)
+        };
+        let mut from = cubed(&mut rng).normalize();
+        if !aimed {
+            from.z = 0.0;
+            from = from.normalize();
         }
-        answers
-    }
+        // Rounded numbers aim within 2 u of this distance, 2e-3 in single precision.
+        let far = 10f64.powf(rng.random_range(2.0..4.0));
+        let ray = Ray {
+            origin: centre + offset + far * from,
+            direction: -from,
+        };
+        (ball, ray)
+    };
+    (0..2000).map(&mut ray).collect()
 }
 
-impl FromAfar<'_> {
-    fn ball(&self, object: u32) -> (DVec3, f64) {
-        let map = about_camera(self.scene, &self.scene.objects[object as usize].value);
-        let rows = map.rows;
-        let centre = DVec3::new(rows[0][3], rows[1][3], rows[2][3]);
-        (centre, rows[0][0])
+/// The sets of balls that rays are said to come near, on every instruction set.
+fn near(scene: &Scene, precision: Precision, rays: &[(u32, Ray)]) -> Vec<(&'static str, Vec<u32>)> {
+    let objects: Vec<u32> = (0..BALLS).collect();
+    let rays: Vec<Ray> = rays.iter().map(|(_, ray)| *ray).collect();
+    let ask = |model: AnyModel| on_each(|set| models::balls_near(set, model, &objects, &rays));
+    match precision {
+        Precision::Single => ask(Made::Single(&model(scene))),
+        Precision::Double => ask(Made::Double(&model(scene))),
     }
 }
 
@@ -346,15 +295,10 @@ fn balls_are_found_from_afar() {
         );
     }
     let scene = scene::parse("balls", &text, Path::new("."), &Overrides::default()).unwrap();
+    let [aimed, past] = [true, false].map(|aimed| from_afar(&scene, aimed));
     for precision in PRECISIONS {
-        for (name, answers) in on_each(
-            precision,
-            &FromAfar {
-                scene: &scene,
-                aimed: true,
-            },
-        ) {
-            for (ball, near) in answers {
+        for (name, sets) in near(&scene, precision, &aimed) {
+            for ((ball, _), near) in aimed.iter().zip(sets) {
                 assert!(
                     near >> ball & 1 == 1,
                     "{precision:?} {name}: ball {ball} of {near:b}"
@@ -362,14 +306,8 @@ fn balls_are_found_from_afar() {
             }
         }
         // No more is asked than comes near: rays past all balls ask none.
-        for (name, answers) in on_each(
-            precision,
-            &FromAfar {
-                scene: &scene,
-                aimed: false,
-            },
-        ) {
-            let asked = answers.iter().filter(|(_, near)| *near != 0).count();
+        for (name, sets) in near(&scene, precision, &past) {
+            let asked = sets.iter().filter(|near| **near != 0).count();
             assert_eq!(asked, 0, "{precision:?} {name}");
         }
     }

@@ -12,18 +12,15 @@
 
 use std::path::Path;
 
-use etalon::inside::integrate::bounce::{Places, bounce};
-use etalon::inside::integrate::chunk::Workspace;
-use etalon::inside::integrate::intersect::NOTHING;
-use etalon::inside::integrate::model::Model;
-use etalon::inside::integrate::pool::{IntField, RealField, flags};
 use etalon::inside::math::affine::Affine;
-use etalon::inside::math::lanes::{Lanes, Scalar};
+use etalon::inside::math::lanes::Scalar;
 use etalon::inside::plan::Tables;
 use etalon::inside::plan::choose::Precision;
 use etalon::inside::scene::parse;
 use etalon::inside::shape::{Placed, Ray, ShapeKind, Start, Tally};
 use etalon::{Overrides, Plan};
+use etalon_doors::Made;
+use etalon_doors::models::path_lengths;
 
 use crate::oracle_support::{Row, number, rows, vector};
 
@@ -94,43 +91,11 @@ impl Chain {
 
 /// Path lengths by the step of the path loop, as it stands in the library.
 fn by_the_loop(plan: &Plan, chain: &Chain) -> Vec<f64> {
-    // The bits are the same in all lanes.
-    match &plan.tables {
-        Tables::Single(tables) => follow(f32::ONE, &tables.0, chain),
-        Tables::Double(tables) => follow(f64::ONE, &tables.0, chain),
-    }
-}
-
-#[inline(never)]
-fn follow<L: Lanes>(l: L, model: &Model<L::Scalar>, chain: &Chain) -> Vec<f64> {
-    let mut workspace = Workspace::<L::Scalar, WAVELENGTHS>::new();
-    let pool = &mut workspace.pool;
-    for (field, v) in [
-        (RealField::Origin, chain.ray.origin),
-        (RealField::Direction, chain.ray.direction),
-    ] {
-        for axis in 0..3 {
-            pool.set_real(l, field, axis, 0, l.real(v[axis]));
-        }
-    }
-    pool.set_int(l, IntField::Departure, 0, l.int(NOTHING));
-    pool.set_int(l, IntField::Flags, 0, l.int(flags::SPECULAR));
-    workspace.trace = Some(Vec::new());
-    for _ in &chain.each {
-        workspace.pool.length = 1;
-        // Roulette is for later segments only.
-        workspace.pool.set_int(l, IntField::Depth, 0, l.int(0));
-        let places = Places { at: 0, to: 0 };
-        let went_on = l.vectorize(
-            #[inline(always)]
-            || bounce(l, model, &mut workspace, places),
-        );
-        if went_on == 0 {
-            break;
-        }
-    }
-    let vertices = workspace.trace.unwrap();
-    vertices.iter().map(|v| v.distance).collect()
+    let model = match &plan.tables {
+        Tables::Single(tables) => Made::Single(&tables.0),
+        Tables::Double(tables) => Made::Double(&tables.0),
+    };
+    path_lengths(model, chain.ray, chain.each.len())
 }
 
 /// Path lengths by certified hits whose points and normals are rounded to f64, as `trace` prints

@@ -8,23 +8,18 @@
 
 use std::f64::consts::{PI, TAU};
 
+use etalon::Instructions;
 use etalon::inside::film::pixels::Pixels;
-use etalon::inside::math::lanes::{Lanes, Scalar};
 use etalon::inside::sample::Slot;
-use etalon::inside::sample::mis::power_weight;
-use etalon::inside::sample::permute::permute;
 use etalon::inside::sample::replicates::Replicates;
-use etalon::inside::sample::sequence::{Identity, Sequence};
-use etalon::inside::sample::sobol::nested_scramble;
-use etalon::inside::sample::warp::{
-    cosine_hemisphere, cosine_hemisphere_pdf, square_to_disk, uniform_sphere,
-};
+use etalon::inside::sample::sequence::Sequence;
 use etalon::inside::scene::SamplerKind;
 use etalon::inside::stats::family::sidak;
+use etalon_doors::samplers::{self, Numbers, Shuffle, power_weights, sample_numbers, shuffled};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use crate::lanes_support::{Job, Kernel, PRECISIONS, Precision, best, map, on_each};
+use crate::lanes_support::{PRECISIONS, Precision, everywhere, on_each};
 use crate::statistics_support::{chi_square, moments, normal_p, t_test, variance_p};
 use crate::truth_file::{list, number, truth};
 
@@ -37,115 +32,45 @@ fn level() -> f64 {
     sidak(FAMILY, TESTS)
 }
 
-/// Which numbers to ask for.
-#[derive(Debug, Clone, Copy)]
-pub enum What {
-    Camera,
-    Pair(Slot, u32),
-    Single(Slot, u32),
-}
-
-/// Asks a sequence for the numbers of (x, y, replicate, index).
-struct Ask<'a> {
-    sequence: Sequence,
-    requests: &'a [[u32; 4]],
-    what: What,
-}
-
-impl Job for Ask<'_> {
-    type Output = Vec<[f64; 5]>;
-    fn run<L: Lanes>(&self, l: L) -> Vec<[f64; 5]> {
-        let mut all = Vec::with_capacity(self.requests.len());
-        for chunk in self.requests.chunks(L::COUNT) {
-            let mut columns = [[0; 16]; 4];
-            for (i, request) in chunk.iter().enumerate() {
-                for (column, &number) in columns.iter_mut().zip(request) {
-                    column[i] = number;
-                }
-            }
-            let mut out = [[L::Scalar::default(); 16]; 5];
-            l.vectorize(
-                #[inline(always)]
-                || {
-                    let [x, y, replicate, index] = columns.each_ref().map(
-                        #[inline(always)]
-                        |c| l.load_int(c),
-                    );
-                    let id: Identity<L> = self.sequence.identity(l, x, y, replicate, index);
-                    let zero = l.real(0.0);
-                    let numbers = match self.what {
-                        What::Camera => {
-                            let sample = self.sequence.camera(l, id, true);
-                            let ([u, v], [s, t]) = (sample.pixel, sample.lens);
-                            [u, v, sample.wavelength, s, t]
-                        }
-                        What::Pair(slot, depth) => {
-                            let [u, v] = self.sequence.pair(l, id, slot, l.int(depth));
-                            [u, v, zero, zero, zero]
-                        }
-                        What::Single(slot, depth) => {
-                            let u = self.sequence.single(l, id, slot, l.int(depth));
-                            [u, zero, zero, zero, zero]
-                        }
-                    };
-                    for (number, out) in numbers.into_iter().zip(&mut out) {
-                        l.store(number, out);
-                    }
-                },
-            );
-            all.extend((0..chunk.len()).map(|i| out.map(|column| column[i].to_f64())));
-        }
-        all
-    }
-}
-
-impl What {
-    fn width(self) -> usize {
-        match self {
-            Self::Camera => 5,
-            Self::Pair(..) => 2,
-            Self::Single(..) => 1,
-        }
-    }
-}
-
 const KINDS: [SamplerKind; 3] = [
     SamplerKind::Independent,
     SamplerKind::Stratified,
     SamplerKind::Sobol,
 ];
-const WHATS: [What; 5] = [
-    What::Camera,
-    What::Pair(Slot::Light, 0),
-    What::Pair(Slot::Bsdf, 3),
-    What::Single(Slot::Choice, 1),
-    What::Single(Slot::Roulette, 6),
+const NUMBERS: [Numbers; 5] = [
+    Numbers::Camera,
+    Numbers::Pair(Slot::Light, 0),
+    Numbers::Pair(Slot::Bsdf, 3),
+    Numbers::Single(Slot::Choice, 1),
+    Numbers::Single(Slot::Roulette, 6),
 ];
 
 pub fn sequence(kind: SamplerKind, seed: u64, spp: u32) -> Sequence {
     Sequence::new(kind, seed, spp, Replicates::Fixed(1))
 }
 
+/// Numbers on the best instruction set.
+fn drawn(
+    precision: Precision,
+    sequence: &Sequence,
+    numbers: Numbers,
+    samples: &[[u32; 4]],
+) -> Vec<[f64; 5]> {
+    sample_numbers(Instructions::best(), precision, sequence, numbers, samples)
+}
+
 /// All samples 0 … n − 1 of `pixels` pixels, pixel by pixel.
 pub fn pixels_of(
     precision: Precision,
     sequence: Sequence,
-    what: What,
+    what: Numbers,
     pixels: u32,
     n: u32,
 ) -> Vec<[f64; 5]> {
     let requests: Vec<[u32; 4]> = (0..pixels)
         .flat_map(|p| (0..n).map(move |i| [p % 64, p / 64, 0, i]))
         .collect();
-    let requests = &requests;
-    best(
-        precision,
-        &Ask {
-            sequence,
-            requests,
-            what,
-        },
-    )
+    drawn(precision, &sequence, what, &requests)
 }
 
 #[test]
@@ -158,21 +83,13 @@ fn every_number_is_uniform_at_every_index() {
             (SamplerKind::Sobol, 256),
         ] {
             let sequence = sequence(kind, 5, spp);
-            for what in WHATS {
+            for what in NUMBERS {
                 // One number a pixel: those of a pixel are not independent of one another.
                 for index in [0, 1, 6, 200] {
                     let requests: Vec<[u32; 4]> = (0..12_800)
                         .map(|p| [p % 160, p / 160, p % 3, index])
                         .collect();
-                    let requests = &requests;
-                    let drawn = best(
-                        precision,
-                        &Ask {
-                            sequence,
-                            requests,
-                            what,
-                        },
-                    );
+                    let drawn = drawn(precision, &sequence, what, &requests);
                     for column in 0..what.width() {
                         let mut counts = [0; 64];
                         for numbers in &drawn {
@@ -192,50 +109,24 @@ fn every_number_is_uniform_at_every_index() {
 fn a_sample_does_not_depend_on_its_company() {
     for precision in PRECISIONS {
         for kind in KINDS {
-            for what in WHATS {
+            for what in NUMBERS {
                 let sequence = sequence(kind, 7, 64);
                 let requests: Vec<[u32; 4]> =
                     (0..999).map(|i| [i % 7, i / 100, i % 2, i % 64]).collect();
-                let together = best(
-                    precision,
-                    &Ask {
-                        sequence,
-                        requests: &requests,
-                        what,
-                    },
-                );
+                let together = drawn(precision, &sequence, what, &requests);
                 let mut reversed = requests.clone();
                 reversed.reverse();
-                let mut backwards = best(
-                    precision,
-                    &Ask {
-                        sequence,
-                        requests: &reversed,
-                        what,
-                    },
-                );
+                let mut backwards = drawn(precision, &sequence, what, &reversed);
                 backwards.reverse();
                 assert_eq!(together, backwards);
-                for (name, other) in on_each(
-                    precision,
-                    &Ask {
-                        sequence,
-                        requests: &requests,
-                        what,
-                    },
-                ) {
+                for (name, other) in
+                    on_each(|set| sample_numbers(set, precision, &sequence, what, &requests))
+                {
                     assert_eq!(together, other, "{name}");
                 }
                 // Another seed, another pixel: other numbers.
                 let sequence = self::sequence(kind, 8, 64);
-                let other = best(
-                    precision,
-                    &Ask {
-                        sequence,
-                        requests: &requests,
-                        what,
-                    },
-                );
+                let other = drawn(precision, &sequence, what, &requests);
                 assert!(together.iter().zip(&other).filter(|(a, b)| a == b).count() < 20);
             }
         }
@@ -276,7 +167,7 @@ fn variances(precision: Precision, spoil: impl Fn(u32, f64) -> f64) -> Vec<(Stri
                 number(&edge_row[promised(kind, ["var_independent", "var_jittered", "var_lhs"])]);
             let names = ["var_independent", "var_jittered", "var_stratified_1d"];
             let ramp_variance = number(&ramp_row[promised(kind, names)]);
-            for what in [What::Camera, What::Pair(Slot::Light, 2)] {
+            for what in [Numbers::Camera, Numbers::Pair(Slot::Light, 2)] {
                 let mut drawn = pixels_of(precision, sequence(kind, 31, n), what, 2_000, n);
                 for (i, numbers) in drawn.iter_mut().enumerate() {
                     for x in numbers {
@@ -350,9 +241,9 @@ fn is_net(points: &[[f64; 2]]) -> bool {
 fn scrambled_sobol_points_are_nets_in_every_aligned_block() {
     let sequence = sequence(SamplerKind::Sobol, 3, 1024);
     for what in [
-        What::Camera,
-        What::Pair(Slot::Light, 0),
-        What::Pair(Slot::Bsdf, 5),
+        Numbers::Camera,
+        Numbers::Pair(Slot::Light, 0),
+        Numbers::Pair(Slot::Bsdf, 5),
     ] {
         for pixel in pixels_of(Precision::Double, sequence, what, 24, 1024).chunks(1024) {
             for m in 0..=10 {
@@ -376,7 +267,7 @@ fn scrambled_sobol_points_are_nets_in_every_aligned_block() {
         }
     }
     // Planted: one point moved by a quarter.
-    let mut points: Vec<[f64; 2]> = pixels_of(Precision::Double, sequence, What::Camera, 1, 64)
+    let mut points: Vec<[f64; 2]> = pixels_of(Precision::Double, sequence, Numbers::Camera, 1, 64)
         .iter()
         .map(|x| [x[0], x[1]])
         .collect();
@@ -408,7 +299,7 @@ fn discrepancy(points: &[[f64; 5]]) -> f64 {
 fn prefixes_of_odd_length_are_better_than_random() {
     let mean = |kind| {
         let sequence = sequence(kind, 17, 1024);
-        let drawn = pixels_of(Precision::Double, sequence, What::Camera, 8, 1024);
+        let drawn = pixels_of(Precision::Double, sequence, Numbers::Camera, 8, 1024);
         let each: Vec<f64> = drawn.chunks(1024).map(|p| discrepancy(&p[..700])).collect();
         moments(&each)
     };
@@ -425,12 +316,12 @@ fn different_slots_are_uncorrelated() {
     let n = 64;
     let pixels = 3_000;
     let whats = [
-        What::Camera,
-        What::Pair(Slot::Light, 0),
-        What::Pair(Slot::Bsdf, 0),
-        What::Single(Slot::Choice, 0),
-        What::Pair(Slot::Light, 1),
-        What::Single(Slot::Roulette, 1),
+        Numbers::Camera,
+        Numbers::Pair(Slot::Light, 0),
+        Numbers::Pair(Slot::Bsdf, 0),
+        Numbers::Single(Slot::Choice, 0),
+        Numbers::Pair(Slot::Light, 1),
+        Numbers::Single(Slot::Roulette, 1),
     ];
     for kind in KINDS {
         let drawn =
@@ -464,27 +355,9 @@ fn different_slots_are_uncorrelated() {
     }
 }
 
-/// Nested scrambles of given words under given seeds.
-struct Scrambles<'a>(&'a [[u32; 2]]);
-
-impl Job for Scrambles<'_> {
-    type Output = Vec<u32>;
-    fn run<L: Lanes>(&self, l: L) -> Vec<u32> {
-        let mut all = Vec::with_capacity(self.0.len());
-        for chunk in self.0.chunks(L::COUNT) {
-            let (mut x, mut seed) = ([0; 16], [0; 16]);
-            for (i, pair) in chunk.iter().enumerate() {
-                (x[i], seed[i]) = (pair[0], pair[1]);
-            }
-            let mut out = [0; 16];
-            l.store_int(
-                nested_scramble(l, l.load_int(&x), l.load_int(&seed)),
-                &mut out,
-            );
-            all.extend(&out[..chunk.len()]);
-        }
-        all
-    }
+/// Images of words, each with its seed, on the best instruction set.
+fn image(shuffle: Shuffle, words: &[[u32; 2]]) -> Vec<u32> {
+    shuffled(Instructions::best(), Precision::Single, shuffle, words)
 }
 
 #[test]
@@ -500,7 +373,7 @@ fn scrambling_is_nested_and_its_flips_are_balanced() {
         let bit = i % 32;
         words.extend([[x, seed], [x ^ 1 << bit, seed]]);
     }
-    let scrambled = best(Precision::Single, &Scrambles(&words));
+    let scrambled = image(Shuffle::Scramble, &words);
     for (i, (pair, out)) in words.chunks(2).zip(scrambled.chunks(2)).enumerate() {
         let bit = i % 32;
         let changed = out[0] ^ out[1];
@@ -535,29 +408,6 @@ fn scrambling_is_nested_and_its_flips_are_balanced() {
     }
 }
 
-/// Elements `i` of permutations of `count` under seeds.
-struct Permutes<'a>(u32, &'a [[u32; 2]]);
-
-impl Job for Permutes<'_> {
-    type Output = Vec<u32>;
-    fn run<L: Lanes>(&self, l: L) -> Vec<u32> {
-        let mut all = Vec::with_capacity(self.1.len());
-        for chunk in self.1.chunks(L::COUNT) {
-            let (mut x, mut seed) = ([0; 16], [0; 16]);
-            for (i, pair) in chunk.iter().enumerate() {
-                (x[i], seed[i]) = (pair[0], pair[1]);
-            }
-            let mut out = [0; 16];
-            l.store_int(
-                permute(l, l.load_int(&x), self.0, l.load_int(&seed)),
-                &mut out,
-            );
-            all.extend(&out[..chunk.len()]);
-        }
-        all
-    }
-}
-
 #[test]
 fn permutations_are_bijections_and_even() {
     let mut rng = Pcg64Mcg::seed_from_u64(43);
@@ -565,7 +415,7 @@ fn permutations_are_bijections_and_even() {
         for _ in 0..10 {
             let seed = rng.random();
             let words: Vec<[u32; 2]> = (0..count).map(|i| [i, seed]).collect();
-            let mut image = best(Precision::Single, &Permutes(count, &words));
+            let mut image = image(Shuffle::Permutation(count), &words);
             image.sort_unstable();
             assert!(image.into_iter().eq(0..count), "{count}");
         }
@@ -579,7 +429,7 @@ fn permutations_are_bijections_and_even() {
                 [[0, seed], [1, seed]]
             })
             .collect();
-        let image = best(Precision::Single, &Permutes(count, &words));
+        let image = image(Shuffle::Permutation(count), &words);
         let mut first = vec![0; count as usize];
         let mut both = vec![0; (count * count) as usize];
         for pair in image.chunks(2) {
@@ -621,21 +471,12 @@ fn many_strata_stay_in_the_square() {
     // As many strata as f32 can count.
     for points in [1 << 22, 3000 * 2999, (1 << 24) - 1] {
         let sequence = sequence(SamplerKind::Stratified, 2, points);
-        for what in [What::Pair(Slot::Light, 0), What::Camera] {
+        for what in [Numbers::Pair(Slot::Light, 0), Numbers::Camera] {
             let requests: Vec<[u32; 4]> = (0..20_000)
                 .map(|i| [1, 2, 0, i * (points / 20_000)])
                 .collect();
-            let requests = &requests;
-            let [single, double] = PRECISIONS.map(|precision| {
-                best(
-                    precision,
-                    &Ask {
-                        sequence,
-                        requests,
-                        what,
-                    },
-                )
-            });
+            let [single, double] =
+                PRECISIONS.map(|precision| drawn(precision, &sequence, what, &requests));
             for (a, b) in single.iter().zip(&double) {
                 for (a, b) in a.iter().zip(b) {
                     assert!(
@@ -702,14 +543,7 @@ fn standard_errors_are_honest() {
             })
         })
         .collect();
-    let drawn = best(
-        Precision::Single,
-        &Ask {
-            sequence,
-            requests: &requests,
-            what: What::Camera,
-        },
-    );
+    let drawn = drawn(Precision::Single, &sequence, Numbers::Camera, &requests);
     let mut film = Pixels::new(pixels as usize, replicates);
     for (k, numbers) in drawn.iter().enumerate() {
         let (pixel, i) = (k as u32 / spp, k as u32 % spp);
@@ -749,7 +583,7 @@ fn stopping_on_the_pilot_is_biased_and_fixed_counts_are_not() {
     let drawn = pixels_of(
         Precision::Single,
         sequence(SamplerKind::Independent, 6, n as u32),
-        What::Camera,
+        Numbers::Camera,
         pixels,
         n as u32,
     );
@@ -795,14 +629,6 @@ fn stopping_on_the_pilot_is_biased_and_fixed_counts_are_not() {
     }
 }
 
-struct Weights;
-impl Kernel<2, 2> for Weights {
-    #[inline(always)]
-    fn apply<L: Lanes>(&self, l: L, [p, q]: [L::Real; 2]) -> [L::Real; 2] {
-        [power_weight(l, p, q), power_weight(l, q, p)]
-    }
-}
-
 #[test]
 fn weights_of_both_strategies_sum_to_one() {
     let (mut ps, mut qs) = (Vec::new(), Vec::new());
@@ -816,7 +642,7 @@ fn weights_of_both_strategies_sum_to_one() {
     ps.push(0.3);
     qs.push(0.0);
     for precision in PRECISIONS {
-        let [a, b] = map(precision, &Weights, &[ps.clone(), qs.clone()]);
+        let [a, b] = everywhere(|set| power_weights(set, precision, [&ps, &qs]));
         for (i, (a, b)) in a.iter().zip(&b).enumerate() {
             assert!(
                 (a + b - 1.0).abs() <= 4.0 * precision.roundoff(),
@@ -829,18 +655,6 @@ fn weights_of_both_strategies_sum_to_one() {
             assert!((a - want).abs() <= 8.0 * precision.roundoff());
         }
         assert_eq!(a[a.len() - 1], 1.0);
-    }
-}
-
-struct Warps;
-impl Kernel<2, 9> for Warps {
-    #[inline(always)]
-    fn apply<L: Lanes>(&self, l: L, [u, v]: [L::Real; 2]) -> [L::Real; 9] {
-        let (x, y) = square_to_disk(l, u, v);
-        let h = cosine_hemisphere(l, u, v);
-        let s = uniform_sphere(l, u, v);
-        let pdf = cosine_hemisphere_pdf(l, h.z);
-        [x, y, h.x, h.y, h.z, s.x, s.y, s.z, pdf]
     }
 }
 
@@ -866,7 +680,8 @@ fn warps(precision: Precision, seed: u64, bend: impl Fn(f64) -> f64) -> [f64; 3]
     let count = 60_000;
     let u: Vec<f64> = (0..count).map(|_| bend(rng.random())).collect();
     let v: Vec<f64> = (0..count).map(|_| rng.random()).collect();
-    let [x, y, hx, hy, hz, sx, sy, sz, pdf] = map(precision, &Warps, &[u, v]);
+    let [x, y, hx, hy, hz, sx, sy, sz, pdf] =
+        everywhere(|set| samplers::warps(set, precision, [&u, &v]));
     for i in 0..count {
         let u = precision.roundoff();
         let hemisphere = hx[i] * hx[i] + hy[i] * hy[i] + hz[i] * hz[i];
@@ -921,7 +736,7 @@ fn warps_are_finite_at_the_corners() {
         }
     }
     for precision in PRECISIONS {
-        for column in map(precision, &Warps, &[u.clone(), v.clone()]) {
+        for column in everywhere(|set| samplers::warps(set, precision, [&u, &v])) {
             assert!(
                 column
                     .iter()

@@ -13,11 +13,12 @@ use etalon::inside::sample::Slot;
 use etalon::inside::scene::{SamplerKind, parse};
 use etalon::inside::stats::slope::{Replicates, Slope};
 use etalon::{Overrides, Plan};
+use etalon_doors::samplers::Numbers;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::Precision;
-use crate::sampling::{What, pixels_of, sequence};
+use crate::sampling::{pixels_of, sequence};
 
 /// Values about a power law: `spread` is their relative standard deviation.
 fn planted(rng: &mut Pcg64Mcg, slope: f64, spread: f64, replicates: usize) -> Vec<Replicates> {
@@ -109,7 +110,7 @@ fn slope_of(
     const PIXELS: u32 = 64;
     const SETS: u64 = 16;
     let square_error = |n: u32, seed: u64| {
-        let what = What::Pair(Slot::Light, 0);
+        let what = Numbers::Pair(Slot::Light, 0);
         let drawn = pixels_of(Precision::Double, sequence(kind, seed, n), what, PIXELS, n);
         let errors = (0..PIXELS)
             .zip(drawn.chunks(n as usize))

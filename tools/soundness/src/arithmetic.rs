@@ -3,26 +3,10 @@
 use std::cmp::Ordering;
 
 use etalon::Instructions;
-use etalon::inside::math::instructions::{DoubleLanes, Job};
-use etalon::inside::math::interval::Interval;
+use etalon_doors::intervals::{Bounds, Operation, arithmetic};
 
 use super::exact::{compare_product, compare_sum};
 use super::random::Source;
-
-/// The operations that are checked exactly.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Operation {
-    /// a + b.
-    Sum,
-    /// a − b.
-    Difference,
-    /// a · b.
-    Product,
-    /// a / b.
-    Quotient,
-    /// √a.
-    SquareRoot,
-}
 
 /// All of them.
 pub const OPERATIONS: [Operation; 5] = [
@@ -32,111 +16,6 @@ pub const OPERATIONS: [Operation; 5] = [
     Operation::Quotient,
     Operation::SquareRoot,
 ];
-
-/// Bounds of many intervals.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Bounds {
-    /// Lower bounds.
-    pub low: Vec<f64>,
-    /// Upper bounds.
-    pub high: Vec<f64>,
-}
-
-impl Bounds {
-    fn push(&mut self, [low, high]: [f64; 2]) {
-        self.low.push(low);
-        self.high.push(high);
-    }
-
-    /// Those of one interval.
-    pub fn at(&self, i: usize) -> [f64; 2] {
-        [self.low[i], self.high[i]]
-    }
-
-    /// Whether all are the same bits.
-    pub fn same_bits(&self, other: &Self) -> bool {
-        let bits = |x: &[f64]| x.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-        bits(&self.low) == bits(&other.low) && bits(&self.high) == bits(&other.high)
-    }
-}
-
-/// An operation on many intervals. The number of them is a multiple of eight.
-pub struct Apply<'a> {
-    /// Which.
-    pub operation: Operation,
-    /// First operands.
-    pub a: &'a Bounds,
-    /// Second operands.
-    pub b: &'a Bounds,
-    /// Leave out the rounding outward, to see that this is noticed.
-    pub unsound: bool,
-}
-
-impl Job<f64> for Apply<'_> {
-    type Output = Bounds;
-
-    #[inline(always)]
-    fn run<L: DoubleLanes>(self, l: L) -> Bounds {
-        let count = self.a.low.len();
-        let mut out = Bounds {
-            low: vec![0.0; count],
-            high: vec![0.0; count],
-        };
-        let mut i = 0;
-        while i + L::COUNT <= count {
-            let a = Interval::new(l, l.load(&self.a.low[i..]), l.load(&self.a.high[i..]));
-            let b = Interval::new(l, l.load(&self.b.low[i..]), l.load(&self.b.high[i..]));
-            let c = if self.unsound {
-                nearest(self.operation, a, b)
-            } else {
-                outward(self.operation, a, b)
-            };
-            l.store(c.low, &mut out.low[i..]);
-            l.store(c.high, &mut out.high[i..]);
-            i += L::COUNT;
-        }
-        out
-    }
-}
-
-#[inline(always)]
-fn outward<L: DoubleLanes>(operation: Operation, a: Interval<L>, b: Interval<L>) -> Interval<L> {
-    match operation {
-        Operation::Sum => a + b,
-        Operation::Difference => a - b,
-        Operation::Product => a * b,
-        Operation::Quotient => a / b,
-        Operation::SquareRoot => a.square_root(),
-    }
-}
-
-/// The mistake that must be found: bounds rounded to nearest.
-#[inline(always)]
-fn nearest<L: DoubleLanes>(operation: Operation, a: Interval<L>, b: Interval<L>) -> Interval<L> {
-    use etalon::inside::math::lanes::Real;
-    let l = a.lanes;
-    let around = |[w, x, y, z]: [L::Real; 4]| {
-        Interval::new(l, w.min(x).min(y.min(z)), w.max(x).max(y.max(z)))
-    };
-    match operation {
-        Operation::Sum => Interval::new(l, a.low + b.low, a.high + b.high),
-        Operation::Difference => Interval::new(l, a.low - b.high, a.high - b.low),
-        Operation::Product => around([
-            a.low * b.low,
-            a.low * b.high,
-            a.high * b.low,
-            a.high * b.high,
-        ]),
-        Operation::Quotient => around([
-            a.low / b.low,
-            a.low / b.high,
-            a.high / b.low,
-            a.high / b.high,
-        ])
-        .whole_where(b.may_be_zero()),
-        Operation::SquareRoot => Interval::new(l, a.low.max(l.real(0.0)).sqrt(), a.high.sqrt()),
-    }
-}
 
 /// Whether the bounds hold the exact result of two numbers; true where there is none.
 pub fn holds(operation: Operation, x: f64, y: f64, [low, high]: [f64; 2]) -> bool {
@@ -198,7 +77,8 @@ impl Report {
     }
 }
 
-/// Checks `count` (a multiple of eight) random intervals on each instruction set.
+/// Checks `count` (a multiple of eight) random intervals on each instruction set; `unsound` leaves out
+/// the rounding outward, to see that this is noticed.
 pub fn check(operation: Operation, seed: u64, count: usize, unsound: bool) -> Report {
     let mut source = Source::new(seed);
     let (mut a, mut b) = (Bounds::default(), Bounds::default());
@@ -211,14 +91,9 @@ pub fn check(operation: Operation, seed: u64, count: usize, unsound: bool) -> Re
         checked: count as u64,
         ..Report::default()
     };
-    let mut results = Instructions::all().into_iter().map(|instructions| {
-        instructions.run(Apply {
-            operation,
-            a: &a,
-            b: &b,
-            unsound,
-        })
-    });
+    let mut results = Instructions::all()
+        .into_iter()
+        .map(|set| arithmetic(set, operation, [&a, &b], unsound));
     let Some(first) = results.next() else {
         return report;
     };

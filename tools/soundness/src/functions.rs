@@ -2,50 +2,10 @@
 
 use astro_float::{BigFloat, Consts, RoundingMode};
 use etalon::Instructions;
-use etalon::inside::math::instructions::{DoubleLanes, Job};
-use etalon::inside::math::interval::{Domain, Interval};
+use etalon_doors::intervals::{self, Bounds, Function};
 
-use super::arithmetic::{Bounds, Report};
+use super::arithmetic::Report;
 use super::random::Source;
-
-/// The functions that are checked against a reference.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Function {
-    /// eˣ.
-    Exponential,
-    /// ln x.
-    Logarithm,
-    /// sin x.
-    Sine,
-    /// cos x.
-    Cosine,
-    /// sin x as for short intervals.
-    SineThin,
-    /// cos x as for short intervals.
-    CosineThin,
-    /// tan x.
-    Tangent,
-    /// arcsin x.
-    ArcSine,
-    /// arccos x.
-    ArcCosine,
-    /// arctan x.
-    ArcTangent,
-    /// Angle of the point (y, x).
-    ArcTangent2,
-    /// sinh x.
-    HyperbolicSine,
-    /// cosh x.
-    HyperbolicCosine,
-    /// tanh x.
-    HyperbolicTangent,
-    /// xʸ.
-    Power,
-    /// x⁷.
-    Seventh,
-    /// x⁻⁴.
-    MinusFourth,
-}
 
 /// All of them.
 pub const FUNCTIONS: [Function; 17] = [
@@ -67,74 +27,6 @@ pub const FUNCTIONS: [Function; 17] = [
     Function::Seventh,
     Function::MinusFourth,
 ];
-
-/// A function of many intervals; their number is a multiple of eight.
-pub struct Apply<'a> {
-    /// Which.
-    pub function: Function,
-    /// First operands.
-    pub a: &'a Bounds,
-    /// Second operands.
-    pub b: &'a Bounds,
-}
-
-impl Job<f64> for Apply<'_> {
-    /// Bounds, and where the function may be undefined.
-    type Output = (Bounds, Vec<bool>);
-
-    #[inline(always)]
-    fn run<L: DoubleLanes>(self, l: L) -> Self::Output {
-        let count = self.a.low.len();
-        let mut out = Bounds {
-            low: vec![0.0; count],
-            high: vec![0.0; count],
-        };
-        let mut broken = vec![false; count];
-        let mut i = 0;
-        while i + L::COUNT <= count {
-            let a = Interval::new(l, l.load(&self.a.low[i..]), l.load(&self.a.high[i..]));
-            let b = Interval::new(l, l.load(&self.b.low[i..]), l.load(&self.b.high[i..]));
-            let mut domain = Domain::unbroken(l);
-            let c = enclosed(self.function, a, b, &mut domain);
-            l.store(c.low, &mut out.low[i..]);
-            l.store(c.high, &mut out.high[i..]);
-            let bits = etalon::inside::math::interval::bits(domain.broken);
-            for j in 0..L::COUNT {
-                broken[i + j] = bits >> j & 1 == 1;
-            }
-            i += L::COUNT;
-        }
-        (out, broken)
-    }
-}
-
-#[inline(always)]
-fn enclosed<L: DoubleLanes>(
-    function: Function,
-    a: Interval<L>,
-    b: Interval<L>,
-    domain: &mut Domain<L>,
-) -> Interval<L> {
-    match function {
-        Function::Exponential => a.exponential(),
-        Function::Logarithm => a.logarithm(domain),
-        Function::Sine => a.sine_cosine().0,
-        Function::Cosine => a.sine_cosine().1,
-        Function::SineThin => a.sine_cosine_thin().0,
-        Function::CosineThin => a.sine_cosine_thin().1,
-        Function::Tangent => a.tangent(domain),
-        Function::ArcSine => a.arc_sine(domain),
-        Function::ArcCosine => a.arc_cosine(domain),
-        Function::ArcTangent => a.arc_tangent(),
-        Function::ArcTangent2 => a.arc_tangent_of_quotient(b, domain),
-        Function::HyperbolicSine => a.hyperbolic_sine(),
-        Function::HyperbolicCosine => a.hyperbolic_cosine(),
-        Function::HyperbolicTangent => a.hyperbolic_tangent(),
-        Function::Power => a.power(b, domain),
-        Function::Seventh => a.whole_power(7),
-        Function::MinusFourth => a.whole_power(-4),
-    }
-}
 
 /// Bits of the reference: arguments of size 2¹⁰²⁴ keep them all after reduction by π.
 const PRECISION: usize = 192;
@@ -301,12 +193,9 @@ pub fn check(function: Function, seed: u64, count: usize, narrowed: bool) -> Opt
         checked: count as u64,
         ..Report::default()
     };
-    let job = || Apply {
-        function,
-        a: &a,
-        b: &b,
-    };
-    let mut results = Instructions::all().into_iter().map(|i| i.run(job()));
+    let mut results = Instructions::all()
+        .into_iter()
+        .map(|set| intervals::function(set, function, [&a, &b]));
     let (first, broken) = results.next()?;
     let same = |other: &(Bounds, Vec<bool>)| first.same_bits(&other.0) && broken == other.1;
     report.different = results.filter(|other| !same(other)).count() as u64;

@@ -22,15 +22,12 @@ use etalon::Instructions;
 use etalon::inside::field::expression::Expression;
 use etalon::inside::field::named;
 use etalon::inside::math::affine::Affine;
-use etalon::inside::math::instructions::Job;
-use etalon::inside::math::lanes::{Lanes, Mask};
-use etalon::inside::math::vec3::Vec3;
 use etalon::inside::scene::{FinderChoice, Implicit};
 use etalon::inside::shape::Query;
 use etalon::inside::shape::implicit::baseline::SteppingFinder;
 use etalon::inside::shape::implicit::certified::{Certified, Packet, WIDTH, Wish, Workspace};
-use etalon::inside::shape::lanes::LaneRay;
-use etalon::inside::shape::lanes::implicit::{LaneImplicit, StartSign};
+use etalon::inside::shape::lanes::implicit::LaneImplicit;
+use etalon_doors::shapes::sign_changes;
 use etalon_method::finders::{CLASSES, Oracle};
 use glam::DVec3;
 use yardstick::Yardstick;
@@ -43,6 +40,15 @@ struct Ray {
     origin: DVec3,
     direction: DVec3,
     t_min: f64,
+}
+
+impl Ray {
+    fn line(&self) -> etalon::Ray {
+        etalon::Ray {
+            origin: self.origin,
+            direction: self.direction,
+        }
+    }
 }
 
 struct Surface {
@@ -125,40 +131,6 @@ fn certified(surface: &Surface, packets: &[Packet], exact: bool) -> f64 {
     })
 }
 
-/// The same by 256 steps and bisection, in the same lanes.
-struct Stepping<'a> {
-    surface: &'a Surface,
-    packets: &'a [Packet],
-}
-
-impl Job<f64> for Stepping<'_> {
-    type Output = f64;
-
-    fn run<L: Lanes<Scalar = f64>>(self, l: L) -> f64 {
-        let start = StartSign::<L> {
-            on: l.mask(false),
-            inward: l.mask(false),
-        };
-        best(|| {
-            let mut found = 0_u32;
-            for packet in self.packets {
-                for at in (0..WIDTH).step_by(L::COUNT) {
-                    let vector = |v: &[[f64; WIDTH]; 3]| {
-                        let [x, y, z] = v.each_ref().map(|v| l.load(&v[at..]));
-                        Vec3::new(x, y, z)
-                    };
-                    let (o, d) = (vector(&packet.origin), vector(&packet.direction));
-                    let ray = LaneRay::<L>::new(l, o, d);
-                    let active = l.mask_from_bits(packet.active >> at);
-                    let (_, hit) = self.surface.stepping.first_change(l, &ray, start, active);
-                    found = found.wrapping_add(hit.bits());
-                }
-            }
-            found
-        })
-    }
-}
-
 const FINDERS: [&str; 5] = [
     "sign-change 256, scalar",
     "sign-change 256, lanes",
@@ -181,24 +153,19 @@ fn times(surface: &Surface, rays: &[Ray]) -> [f64; 5] {
     });
     let march = best(|| {
         count(&|r| {
-            let ray = etalon::inside::shape::Ray {
-                origin: r.origin,
-                direction: r.direction,
-            };
             let query = Query {
-                ray,
+                ray: r.line(),
                 t_min: r.t_min,
                 t_max: f64::INFINITY,
             };
             surface.scalar.first_hit(&query).is_some()
         })
     });
+    let lines: Vec<etalon::Ray> = rays.iter().map(Ray::line).collect();
+    let set = Instructions::best();
     [
         march,
-        Instructions::best().run(Stepping {
-            surface,
-            packets: &packets,
-        }),
+        best(|| sign_changes(set, &surface.stepping, &lines)),
         yardstick,
         certified(surface, &packets, false),
         certified(surface, &packets, true),

@@ -1,0 +1,243 @@
+//! Intervals in lanes.
+
+use etalon_lanes::math::instructions::{DoubleLanes, Instructions, Job};
+use etalon_lanes::math::interval::{self, Domain, Interval};
+use etalon_lanes::math::lanes::Real;
+use etalon_lanes::math::packet::each;
+
+/// Bounds of many intervals.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Bounds {
+    /// Lower bounds.
+    pub low: Vec<f64>,
+    /// Upper bounds.
+    pub high: Vec<f64>,
+}
+
+impl Bounds {
+    /// Adds an interval.
+    pub fn push(&mut self, [low, high]: [f64; 2]) {
+        self.low.push(low);
+        self.high.push(high);
+    }
+
+    /// Those of one interval.
+    pub fn at(&self, i: usize) -> [f64; 2] {
+        [self.low[i], self.high[i]]
+    }
+
+    /// Whether all are the same bits.
+    pub fn same_bits(&self, other: &Self) -> bool {
+        let bits = |x: &[f64]| x.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        bits(&self.low) == bits(&other.low) && bits(&self.high) == bits(&other.high)
+    }
+}
+
+/// Arithmetic of intervals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Operation {
+    /// a + b.
+    Sum,
+    /// a − b.
+    Difference,
+    /// a · b.
+    Product,
+    /// a / b.
+    Quotient,
+    /// √a.
+    SquareRoot,
+}
+
+/// Elementary functions of intervals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Function {
+    /// eˣ.
+    Exponential,
+    /// ln x.
+    Logarithm,
+    /// sin x.
+    Sine,
+    /// cos x.
+    Cosine,
+    /// sin x as for short intervals.
+    SineThin,
+    /// cos x as for short intervals.
+    CosineThin,
+    /// tan x.
+    Tangent,
+    /// arcsin x.
+    ArcSine,
+    /// arccos x.
+    ArcCosine,
+    /// arctan x.
+    ArcTangent,
+    /// Angle of the point (y, x).
+    ArcTangent2,
+    /// sinh x.
+    HyperbolicSine,
+    /// cosh x.
+    HyperbolicCosine,
+    /// tanh x.
+    HyperbolicTangent,
+    /// xʸ.
+    Power,
+    /// x⁷.
+    Seventh,
+    /// x⁻⁴.
+    MinusFourth,
+}
+
+/// An operation on as many intervals as fill packets of any width. `to_nearest` leaves out the
+/// rounding outward: a mistake that checks must find.
+///
+/// # Panics
+/// If the number of intervals is no multiple of eight.
+pub fn arithmetic(
+    set: Instructions,
+    operation: Operation,
+    [a, b]: [&Bounds; 2],
+    to_nearest: bool,
+) -> Bounds {
+    let job = Arithmetic {
+        operation,
+        to_nearest,
+    };
+    set.run(Each { job, a, b }).0
+}
+
+/// A function of as many intervals as fill packets of any width, and where it may be undefined.
+///
+/// # Panics
+/// If the number of intervals is no multiple of eight.
+pub fn function(
+    set: Instructions,
+    function: Function,
+    [a, b]: [&Bounds; 2],
+) -> (Bounds, Vec<bool>) {
+    set.run(Each {
+        job: function,
+        a,
+        b,
+    })
+}
+
+/// Something made of a packet of intervals.
+trait OfIntervals {
+    fn of<L: DoubleLanes>(
+        &self,
+        a: Interval<L>,
+        b: Interval<L>,
+        domain: &mut Domain<L>,
+    ) -> Interval<L>;
+}
+
+struct Each<'a, J> {
+    job: J,
+    a: &'a Bounds,
+    b: &'a Bounds,
+}
+
+impl<J: OfIntervals> Job<f64> for Each<'_, J> {
+    type Output = (Bounds, Vec<bool>);
+
+    #[inline(always)]
+    fn run<L: DoubleLanes>(self, l: L) -> Self::Output {
+        let count = self.a.low.len();
+        assert!(count.is_multiple_of(8), "{count} intervals");
+        let mut bounds = Bounds {
+            low: vec![0.0; count],
+            high: vec![0.0; count],
+        };
+        let mut broken = vec![false; count];
+        for i in (0..count).step_by(L::COUNT) {
+            let a = Interval::new(l, l.load(&self.a.low[i..]), l.load(&self.a.high[i..]));
+            let b = Interval::new(l, l.load(&self.b.low[i..]), l.load(&self.b.high[i..]));
+            let mut domain = Domain::unbroken(l);
+            let c = self.job.of(a, b, &mut domain);
+            l.store(c.low, &mut bounds.low[i..]);
+            l.store(c.high, &mut bounds.high[i..]);
+            for j in each(interval::bits(domain.broken)) {
+                broken[i + j] = true;
+            }
+        }
+        (bounds, broken)
+    }
+}
+
+struct Arithmetic {
+    operation: Operation,
+    to_nearest: bool,
+}
+
+impl OfIntervals for Arithmetic {
+    #[inline(always)]
+    fn of<L: DoubleLanes>(&self, a: Interval<L>, b: Interval<L>, _: &mut Domain<L>) -> Interval<L> {
+        if self.to_nearest {
+            return nearest(self.operation, a, b);
+        }
+        match self.operation {
+            Operation::Sum => a + b,
+            Operation::Difference => a - b,
+            Operation::Product => a * b,
+            Operation::Quotient => a / b,
+            Operation::SquareRoot => a.square_root(),
+        }
+    }
+}
+
+/// Bounds rounded to nearest.
+#[inline(always)]
+fn nearest<L: DoubleLanes>(operation: Operation, a: Interval<L>, b: Interval<L>) -> Interval<L> {
+    let l = a.lanes;
+    let around = |[w, x, y, z]: [L::Real; 4]| {
+        Interval::new(l, w.min(x).min(y.min(z)), w.max(x).max(y.max(z)))
+    };
+    match operation {
+        Operation::Sum => Interval::new(l, a.low + b.low, a.high + b.high),
+        Operation::Difference => Interval::new(l, a.low - b.high, a.high - b.low),
+        Operation::Product => around([
+            a.low * b.low,
+            a.low * b.high,
+            a.high * b.low,
+            a.high * b.high,
+        ]),
+        Operation::Quotient => around([
+            a.low / b.low,
+            a.low / b.high,
+            a.high / b.low,
+            a.high / b.high,
+        ])
+        .whole_where(b.may_be_zero()),
+        Operation::SquareRoot => Interval::new(l, a.low.max(l.real(0.0)).sqrt(), a.high.sqrt()),
+    }
+}
+
+impl OfIntervals for Function {
+    #[inline(always)]
+    fn of<L: DoubleLanes>(
+        &self,
+        a: Interval<L>,
+        b: Interval<L>,
+        domain: &mut Domain<L>,
+    ) -> Interval<L> {
+        match self {
+            Self::Exponential => a.exponential(),
+            Self::Logarithm => a.logarithm(domain),
+            Self::Sine => a.sine_cosine().0,
+            Self::Cosine => a.sine_cosine().1,
+            Self::SineThin => a.sine_cosine_thin().0,
+            Self::CosineThin => a.sine_cosine_thin().1,
+            Self::Tangent => a.tangent(domain),
+            Self::ArcSine => a.arc_sine(domain),
+            Self::ArcCosine => a.arc_cosine(domain),
+            Self::ArcTangent => a.arc_tangent(),
+            Self::ArcTangent2 => a.arc_tangent_of_quotient(b, domain),
+            Self::HyperbolicSine => a.hyperbolic_sine(),
+            Self::HyperbolicCosine => a.hyperbolic_cosine(),
+            Self::HyperbolicTangent => a.hyperbolic_tangent(),
+            Self::Power => a.power(b, domain),
+            Self::Seventh => a.whole_power(7),
+            Self::MinusFourth => a.whole_power(-4),
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! Random numbers and what is made of them.
+
+use etalon_lanes::math::instructions::{Instructions, Job, Precision};
+use etalon_lanes::math::lanes::{Lanes, Scalar, WIDEST};
+use etalon_lanes::math::packet::{array, int_array};
+use etalon_lanes::sample::Slot;
+use etalon_lanes::sample::mis::power_weight;
+use etalon_lanes::sample::permute::permute;
+use etalon_lanes::sample::sequence::Sequence;
+use etalon_lanes::sample::sobol::nested_scramble;
+use etalon_lanes::sample::warp::{
+    cosine_hemisphere, cosine_hemisphere_pdf, square_to_disk, uniform_sphere,
+};
+
+use crate::columns::columns;
+
+/// Which numbers of a sample.
+#[derive(Debug, Clone, Copy)]
+pub enum Numbers {
+    /// Position in the pixel (two), wavelength, position on the lens (two).
+    Camera,
+    /// The pair of a slot at a bounce.
+    Pair(Slot, u32),
+    /// The single number of a slot at a bounce.
+    Single(Slot, u32),
+}
+
+impl Numbers {
+    /// How many there are.
+    pub fn width(self) -> usize {
+        match self {
+            Self::Camera => 5,
+            Self::Pair(..) => 2,
+            Self::Single(..) => 1,
+        }
+    }
+}
+
+/// Numbers of samples (x, y, replicate, index), the others of the five zero.
+pub fn sample_numbers(
+    set: Instructions,
+    precision: Precision,
+    sequence: &Sequence,
+    numbers: Numbers,
+    samples: &[[u32; 4]],
+) -> Vec<[f64; 5]> {
+    let job = SampleNumbers {
+        sequence,
+        numbers,
+        samples,
+    };
+    set.run_in(precision, job)
+}
+
+struct SampleNumbers<'a> {
+    sequence: &'a Sequence,
+    numbers: Numbers,
+    samples: &'a [[u32; 4]],
+}
+
+impl<T: Scalar> Job<T> for SampleNumbers<'_> {
+    type Output = Vec<[f64; 5]>;
+
+    #[inline(always)]
+    fn run<L: Lanes<Scalar = T>>(self, l: L) -> Vec<[f64; 5]> {
+        let mut all = Vec::with_capacity(self.samples.len());
+        for samples in self.samples.chunks(L::COUNT) {
+            let [x, y, replicate, index] = columns_of(samples);
+            let [x, y] = [l.load_int(&x), l.load_int(&y)];
+            let [replicate, index] = [l.load_int(&replicate), l.load_int(&index)];
+            let id = self.sequence.identity(l, x, y, replicate, index);
+            let zero = l.real(0.0);
+            let [a, b, c, d, e] = match self.numbers {
+                Numbers::Camera => {
+                    let sample = self.sequence.camera(l, id, true);
+                    let ([u, v], [s, t]) = (sample.pixel, sample.lens);
+                    [u, v, sample.wavelength, s, t]
+                }
+                Numbers::Pair(slot, depth) => {
+                    let [u, v] = self.sequence.pair(l, id, slot, l.int(depth));
+                    [u, v, zero, zero, zero]
+                }
+                Numbers::Single(slot, depth) => {
+                    let u = self.sequence.single(l, id, slot, l.int(depth));
+                    [u, zero, zero, zero, zero]
+                }
+            };
+            let columns = [
+                array(l, a),
+                array(l, b),
+                array(l, c),
+                array(l, d),
+                array(l, e),
+            ];
+            all.extend((0..samples.len()).map(|i| columns.map(|column| column[i].to_f64())));
+        }
+        all
+    }
+}
+
+/// Rows as columns, the places that are left over zero.
+fn columns_of<const N: usize>(rows: &[[u32; N]]) -> [[u32; WIDEST]; N] {
+    let mut columns = [[0; WIDEST]; N];
+    for (i, row) in rows.iter().enumerate() {
+        for (column, &number) in columns.iter_mut().zip(row) {
+            column[i] = number;
+        }
+    }
+    columns
+}
+
+/// A bijection of words that a seed chooses.
+#[derive(Debug, Clone, Copy)]
+pub enum Shuffle {
+    /// Nested scrambling of all words.
+    Scramble,
+    /// A permutation of the words below a number.
+    Permutation(u32),
+}
+
+/// The images of words, each with its seed.
+pub fn shuffled(
+    set: Instructions,
+    precision: Precision,
+    shuffle: Shuffle,
+    words: &[[u32; 2]],
+) -> Vec<u32> {
+    set.run_in(precision, Shuffled(shuffle, words))
+}
+
+struct Shuffled<'a>(Shuffle, &'a [[u32; 2]]);
+
+impl<T: Scalar> Job<T> for Shuffled<'_> {
+    type Output = Vec<u32>;
+
+    #[inline(always)]
+    fn run<L: Lanes<Scalar = T>>(self, l: L) -> Vec<u32> {
+        let Self(shuffle, words) = self;
+        let mut all = Vec::with_capacity(words.len());
+        for words in words.chunks(L::COUNT) {
+            let [x, seed] = columns_of(words);
+            let (x, seed) = (l.load_int(&x), l.load_int(&seed));
+            let image = match shuffle {
+                Shuffle::Scramble => nested_scramble(l, x, seed),
+                Shuffle::Permutation(count) => permute(l, x, count, seed),
+            };
+            all.extend(&int_array(l, image)[..words.len()]);
+        }
+        all
+    }
+}
+
+columns! {
+    /// The weights of two strategies with densities p and q.
+    power_weights(l, [p, q]: 2) -> 2 {
+        [power_weight(l, p, q), power_weight(l, q, p)]
+    }
+
+    /// Points of the disk (two numbers), of the hemisphere by cosine and of the sphere (three each),
+    /// and the density of the second.
+    warps(l, [u, v]: 2) -> 9 {
+        let (x, y) = square_to_disk(l, u, v);
+        let h = cosine_hemisphere(l, u, v);
+        let s = uniform_sphere(l, u, v);
+        [x, y, h.x, h.y, h.z, s.x, s.y, s.z, cosine_hemisphere_pdf(l, h.z)]
+    }
+}

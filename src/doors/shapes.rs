@@ -1,0 +1,91 @@
+//! Where rays enter and leave shapes.
+
+use etalon_lanes::math::instructions::{Instructions, Job, Precision};
+use etalon_lanes::math::lanes::{Lanes, Mask, Scalar};
+use etalon_lanes::math::vec3::Vec3;
+use etalon_lanes::shape::lanes::implicit::{LaneImplicit, StartSign};
+use etalon_lanes::shape::lanes::{Enclosure, LaneRay, LaneShape};
+use etalon_lanes::shape::{Placed, Ray};
+
+use crate::columns::{load_rays, vector};
+
+/// One ray's answer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RaySpan {
+    /// The ray as it was rounded.
+    pub ray: Ray,
+    /// Bounds of the entry.
+    pub near: [f64; 2],
+    /// Bounds of the exit.
+    pub far: [f64; 2],
+    /// Whether the shape is surely met.
+    pub hit: bool,
+    /// Whether it is surely missed.
+    pub miss: bool,
+}
+
+/// Spans of rays, each with its shape.
+pub fn spans(set: Instructions, precision: Precision, cases: &[(&Placed, Ray)]) -> Vec<RaySpan> {
+    set.run_in(precision, Spans(cases))
+}
+
+struct Spans<'a>(&'a [(&'a Placed, Ray)]);
+
+impl<T: Scalar> Job<T> for Spans<'_> {
+    type Output = Vec<RaySpan>;
+
+    #[inline(always)]
+    fn run<L: Lanes<Scalar = T>>(self, l: L) -> Vec<RaySpan> {
+        let mut spans = Vec::with_capacity(self.0.len());
+        for (placed, ray) in self.0 {
+            let (kind, inverse) = (Some(placed.kind()), placed.inverse());
+            let reach = ray.origin.abs().max_element();
+            let shape = LaneShape::new(kind, placed.to_world(), &inverse, reach);
+            let (origin, direction) = (Vec3::splat(l, ray.origin), Vec3::splat(l, ray.direction));
+            let ray = LaneRay::<L>::new(l, origin, direction);
+            let span = shape.span(l, &ray, l.mask(true), l.real(f64::INFINITY));
+            let ends = |e: Enclosure<L>| [e.low, e.high].map(|x| l.lane(x, 0).to_f64());
+            spans.push(RaySpan {
+                ray: Ray {
+                    origin: vector(l, origin, 0),
+                    direction: vector(l, direction, 0),
+                },
+                near: ends(span.near),
+                far: ends(span.far),
+                hit: span.hit.any(),
+                miss: span.miss.any(),
+            });
+        }
+        spans
+    }
+}
+
+/// How many rays meet a sign change of an implicit surface's field.
+pub fn sign_changes(set: Instructions, surface: &LaneImplicit<f64>, rays: &[Ray]) -> u32 {
+    set.run(SignChanges { surface, rays })
+}
+
+struct SignChanges<'a> {
+    surface: &'a LaneImplicit<f64>,
+    rays: &'a [Ray],
+}
+
+impl Job<f64> for SignChanges<'_> {
+    type Output = u32;
+
+    #[inline(always)]
+    fn run<L: Lanes<Scalar = f64>>(self, l: L) -> u32 {
+        let start = StartSign::<L> {
+            on: l.mask(false),
+            inward: l.mask(false),
+        };
+        let mut found = 0;
+        for rays in self.rays.chunks(L::COUNT) {
+            let ray = load_rays(l, rays.iter().copied());
+            let active = l.mask_from_bits(u32::MAX >> (u32::BITS as usize - rays.len()));
+            let (_, hit) = self.surface.first_change(l, &ray, start, active);
+            found += hit.bits().count_ones();
+        }
+        found
+    }
+}
