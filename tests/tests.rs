@@ -22,6 +22,7 @@ mod lights;
 mod many_implicits;
 mod many_lights;
 mod many_objects;
+mod materials;
 mod metrics;
 mod mirror_chains;
 mod mistakes;
