@@ -9,7 +9,8 @@ use std::collections::HashMap;
 
 use etalon::Instructions;
 use etalon::inside::field::expression::parse;
-use etalon::inside::field::over_box::over_box;
+use etalon::inside::field::interval_program::IntervalProgram;
+use etalon::inside::field::over_box;
 use etalon::inside::math::affine::Affine;
 use etalon::inside::root::Outcome;
 use etalon::inside::root::interval::{Enclosed, PIECES, Pieces, first_zero};
@@ -18,6 +19,7 @@ use etalon::inside::shape::implicit::enclosed::{EnclosedField, Method, Searching
 use etalon::inside::shape::ladder::{Ladder, ScaledRay};
 use glam::DVec3;
 
+use crate::lanes_support::on_each;
 use crate::oracle_support::{self, IMPLICIT, OracleShape, number, shapes, vector};
 
 /// A row of the oracle: a ray, and its first root with multiplicity.
@@ -266,12 +268,15 @@ fn factors_have_bounds_of_their_own() {
     );
 }
 
-/// What is proved of a field over a box.
+/// What is proved of a field over a box, the same on every instruction set.
 #[test]
 fn boxes_are_surveyed() {
     let survey = |text: &str| {
-        let tape = parse(text, &[]).unwrap().tape;
-        over_box(&tape, &[DVec3::splat(-1.0), DVec3::splat(1.0)])
+        let program = IntervalProgram::new(&parse(text, &[]).unwrap().tape);
+        let inside = [DVec3::splat(-1.0), DVec3::splat(1.0)];
+        let all = on_each(|set| over_box::survey(set, &program, &inside));
+        assert!(all.iter().all(|(_, other)| *other == all[0].1), "{all:?}");
+        all[0].1
     };
     assert!(survey("sqrt(x - 2)").undefined);
     assert!(survey("x^2 + y^2 + z^2 + 1/10").empty);

@@ -29,12 +29,16 @@ const PARTS: usize = 16;
 
 /// Encloses a field and its gradient over 16³ parts of a box.
 pub fn over_box(tape: &Tape, inside: &[DVec3; 2]) -> OverBox {
-    survey(&IntervalProgram::new(tape), inside)
+    survey(Instructions::best(), &IntervalProgram::new(tape), inside)
 }
 
-/// The same of a program.
-pub fn survey(program: &IntervalProgram, inside: &[DVec3; 2]) -> OverBox {
-    Instructions::best().run(Survey { program, inside })
+/// The same of a program, on an instruction set.
+pub fn survey(
+    instructions: Instructions,
+    program: &IntervalProgram,
+    inside: &[DVec3; 2],
+) -> OverBox {
+    instructions.run(Survey { program, inside })
 }
 
 struct Survey<'a> {

@@ -66,7 +66,7 @@ impl EnclosedField {
     /// those along the ray. The bound of a product is none of its factors.
     pub fn surveyed(mut self, inside: &[DVec3; 2]) -> Self {
         for factor in &mut self.factors {
-            factor.steepness = survey(&factor.program, inside).steepness;
+            factor.steepness = survey(Instructions::best(), &factor.program, inside).steepness;
         }
         self
     }
