@@ -29,6 +29,8 @@ mod mistakes;
 mod occluders;
 mod oracle_primitives;
 mod oracle_support;
+#[cfg(feature = "planted")]
+mod phong_pictures;
 mod references;
 mod render_goal;
 mod rooms;
