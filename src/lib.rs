@@ -238,7 +238,6 @@ pub mod inside {
     #[cfg(feature = "planted")]
     pub use etalon_lanes::planted;
     pub use etalon_lanes::{
-        camera, declare, doors, field, integrate, light, material, math, root, sample, shape,
-        spectrum,
+        camera, declare, field, integrate, light, material, math, root, sample, shape, spectrum,
     };
 }

@@ -13,13 +13,13 @@ use std::path::Path;
 
 use etalon::Overrides;
 use etalon::inside::declare::{Declaration, Quantity, Range};
-use etalon::inside::doors::material::{
-    C, Evaluation, Sample, Setting, Subject, evaluate_each, lambertian_and_general, sample_each,
-};
 use etalon::inside::material::{MaterialKind, Transport};
 use etalon::inside::math::instructions::Precision;
 use etalon::inside::scene;
 use etalon::inside::stats::family::sidak;
+use etalon_doors::material::{
+    C, Evaluation, Sample, Setting, Subject, evaluate_each, lambertian_and_general, sample_each,
+};
 use glam::DVec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;

@@ -16,6 +16,8 @@ pub mod samplers;
 pub mod shapes;
 pub mod words;
 
+pub use etalon_lanes::doors::material;
+
 /// Tables of lane code, made in one of the precisions.
 #[derive(Debug, Clone, Copy)]
 pub enum Made<S, D> {

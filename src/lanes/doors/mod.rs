@@ -1,3 +1,4 @@
-//! Ways in for tests: functions that are not generic, so that whoever calls them compiles no lanes.
+//! Doors that only this crate can open: they go through its list of materials. They are of the same
+//! kind as those of `etalon-doors`, which shows them beside its own.
 
 pub mod material;
