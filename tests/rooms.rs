@@ -158,3 +158,22 @@ fn a_wrong_arrow_and_a_circle_are_seen() {
     circular.get_mut("math").unwrap().insert("scene".to_owned());
     assert_eq!(circles(&circular), ["math", "scene", "shape"]);
 }
+
+/// Code over lanes would be compiled again, for every instruction set and precision, with each change of
+/// a test; the doors stand in `src/doors`.
+#[test]
+fn tests_and_tools_compile_no_lanes() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files = Vec::new();
+    for folder in ["tests", "tools"] {
+        rust_files(&root.join(folder), &mut files);
+    }
+    assert!(files.len() > 50);
+    let generic = ["Lanes", "DoubleLanes"].map(|bound| format!(": {bound}"));
+    for file in files {
+        let code = std::fs::read_to_string(&file).unwrap();
+        let mut lines = code.lines();
+        let found = lines.find(|line| generic.iter().any(|word| line.contains(word)));
+        assert_eq!(found, None, "{}", file.display());
+    }
+}

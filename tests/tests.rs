@@ -1,4 +1,4 @@
-//! The test suite, one binary.
+//! The test suite, one binary. It compiles no lane code: tests that ask lanes knock at `etalon-doors`.
 
 mod cli;
 mod cli_render;
