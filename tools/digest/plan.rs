@@ -1,5 +1,7 @@
 //! What the plan chooses for a scene as it stands, read from a picture of one pixel.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use etalon::{Attribute, Picture};
 
 use super::binary::Binary;
@@ -64,7 +66,9 @@ pub fn row(binary: &Binary, variant: &Variant) -> Result<Vec<String>, String> {
     };
     let needs = line("in the loop: ")?.split(", ");
     let needs = needs.map(|words| translated(&NEEDS, words));
-    let needs: Vec<_> = needs.collect::<Result<_, _>>()?;
+    // A set: etalon may say it in any order.
+    let needs: BTreeSet<_> = needs.collect::<Result<_, _>>()?;
+    let needs: Vec<_> = needs.into_iter().collect();
     let [index, occluders, finders] = intersection(line("intersection: ")?)?;
     let choices = [
         text("precision")?,
@@ -88,14 +92,18 @@ fn intersection(words: &str) -> Result<[String; 3], String> {
         return Err(format!("neither a list nor a hierarchy: {words:?}"));
     };
     let mut occluders = "all";
-    let mut finders = Vec::new();
+    let mut finders = BTreeMap::new();
     for part in words.split("; ") {
         if let Some(rest) = part.strip_prefix("shadow rays ask ") {
             occluders = rest.split(',').next().unwrap_or(rest);
         } else if let Some((count, how)) = part.split_once(" implicit by ") {
-            finders.push(format!("{count} {}", translated(&FINDERS, how)?));
+            finders.insert(translated(&FINDERS, how)?, count);
         }
     }
+    let finders = finders
+        .iter()
+        .map(|(name, count)| format!("{count} {name}"));
+    let finders: Vec<_> = finders.collect();
     Ok([index.to_owned(), occluders.to_owned(), finders.join(" ")])
 }
 
