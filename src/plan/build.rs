@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::PlanError;
+use super::bounds::about_camera;
 use super::choose::Choices;
-use super::extent::about_camera;
 use super::occluders::occluders;
 use crate::camera::LaneCamera;
 use crate::declare::Value;
@@ -139,7 +139,7 @@ struct Builder<'a, T> {
 impl<'a, T: Scalar> Builder<'a, T> {
     fn new(wavelengths: usize, grid: &'a WavelengthGrid, scene: &Scene) -> Self {
         let placed = |o: &Named<Object>| {
-            super::extent::bounds(&o.value.shape, &about_camera(scene, &o.value))
+            super::bounds::bounds(&o.value.shape, &about_camera(scene, &o.value))
         };
         let bounds = scene.objects.iter().filter_map(placed);
         Self {
@@ -154,7 +154,7 @@ impl<'a, T: Scalar> Builder<'a, T> {
             resolver: Resolver::default(),
             bounded: Vec::new(),
             unbounded: Vec::new(),
-            reach: bounds.map(|b| super::extent::reach(&b)).fold(0.0, f64::max),
+            reach: bounds.map(|b| super::bounds::reach(&b)).fold(0.0, f64::max),
         }
     }
 

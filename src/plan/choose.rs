@@ -1,24 +1,16 @@
 //! From needs and wishes to decisions, in one table.
 
 use super::PlanError;
-use super::extent::{self, smallest_gap, worst_error};
+use super::bounds::Blur;
 use super::needs::{everything, needs};
 use crate::integrate::model::Needs;
-use crate::math::affine::Affine;
 pub use crate::math::instructions::Precision;
 use crate::math::lanes::Scalar;
 use crate::sample::replicates::Replicates;
 use crate::scene::{PrecisionChoice, Scene};
-use crate::shape::{Placed, ShapeKind};
 
 /// Wavelengths per path where the scene does not say.
 pub const DEFAULT_WAVELENGTHS: u32 = 8;
-/// Share of a pixel's width that single precision may blur.
-pub const PIXEL_SHARE: f64 = 1e-2;
-/// Share of the smallest gap between objects that it may blur. A half would keep every point on
-/// its side of the gap; an eighth of that keeps what is seen through it, too, as errors have
-/// either sign and hardly ever their worst size.
-pub const GAP_SHARE: f64 = 1.0 / 16.0;
 
 /// Why a precision was chosen.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,30 +22,17 @@ pub enum PrecisionReason {
     },
     /// Hits on implicit surfaces are certified in double.
     Implicit,
-    /// The numbers decide.
-    Measured {
-        /// The bound in single precision beside the pixel.
-        error: extent::Error,
-        /// Smallest gap between objects, if any.
-        gap: Option<f64>,
-    },
+    /// What single precision may blur decides.
+    Measured(Blur),
 }
 
 /// Why single precision would not have been taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Doubt {
-    /// The bound of its error is not small enough.
-    Bound {
-        /// It, beside the pixel.
-        error: extent::Error,
-        /// Smallest gap between objects, if any.
-        gap: Option<f64>,
-    },
+    /// What it may blur is not small enough.
+    Blur(Blur),
     /// Hits on implicit surfaces are rounded to it, and nobody knows how close their sheets are.
-    Implicit {
-        /// The bound of its error.
-        error: extent::Error,
-    },
+    Implicit(Blur),
 }
 
 /// What is built for a scene.
@@ -78,16 +57,13 @@ pub struct Choices {
 /// # Errors
 /// [`PlanError::Wavelengths`] for a count that the loop is not compiled for.
 pub fn choose(scene: &Scene, full: bool) -> Result<Choices, PlanError> {
-    let error = worst_error(scene, f32::ROUNDOFF, inverse);
-    let gap = smallest_gap(scene);
-    let suffices = error.position <= PIXEL_SHARE * error.pixel
-        && gap.is_none_or(|gap| error.position <= GAP_SHARE * gap);
+    let blur = Blur::new(scene, f32::ROUNDOFF);
     let (precision, precision_reason) = match scene.image.precision {
         PrecisionChoice::F32 => {
             let doubt = if needs(scene).implicit {
-                Some(Doubt::Implicit { error })
+                Some(Doubt::Implicit(blur))
             } else {
-                (!suffices).then_some(Doubt::Bound { error, gap })
+                (!blur.is_small()).then_some(Doubt::Blur(blur))
             };
             (Precision::Single, PrecisionReason::Asked { doubt })
         }
@@ -96,12 +72,12 @@ pub fn choose(scene: &Scene, full: bool) -> Result<Choices, PlanError> {
             (Precision::Double, PrecisionReason::Implicit)
         }
         PrecisionChoice::Auto => (
-            if suffices {
+            if blur.is_small() {
                 Precision::Single
             } else {
                 Precision::Double
             },
-            PrecisionReason::Measured { error, gap },
+            PrecisionReason::Measured(blur),
         ),
     };
     let wavelengths = scene.image.wavelengths.unwrap_or(DEFAULT_WAVELENGTHS);
@@ -124,9 +100,4 @@ pub fn choose(scene: &Scene, full: bool) -> Result<Choices, PlanError> {
         wavelengths,
         replicates,
     })
-}
-
-/// The inverse of a map, rounded from double-double.
-fn inverse(to_world: &Affine) -> Option<Affine> {
-    Some(Placed::new(ShapeKind::Plane, to_world).ok()?.inverse())
 }

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::choose::{Doubt, GAP_SHARE, PIXEL_SHARE, Precision, PrecisionReason};
-use super::extent::Error;
+use super::bounds::{Blur, GAP_SHARE, PIXEL_SHARE};
+use super::choose::{Doubt, Precision, PrecisionReason};
 use super::{Plan, Tables};
 use crate::film::pixels::Pixels;
 use crate::integrate::model::{Model, Needs};
@@ -253,7 +253,7 @@ fn precision(plan: &Plan) -> String {
         Precision::Single => "single (f32)",
         Precision::Double => "double (f64)",
     };
-    let (error, gap) = match plan.choices.precision_reason {
+    let blur = match plan.choices.precision_reason {
         PrecisionReason::Asked { .. } => {
             let doubt = doubt(plan).map_or_else(String::new, |doubt| format!("; {doubt}"));
             return format!("precision: {name}, as asked for{doubt}");
@@ -264,30 +264,30 @@ fn precision(plan: &Plan) -> String {
                  from where they are"
             );
         }
-        PrecisionReason::Measured { error, gap } => (error, gap),
+        PrecisionReason::Measured(blur) => blur,
     };
     let verdict = match plan.choices.precision {
         Precision::Single => "suffices",
         Precision::Double => "because single does not suffice",
     };
-    let bound = bound(error, gap);
-    format!("precision: {name} {verdict}: in single, {bound}")
+    format!("precision: {name} {verdict}: in single, {}", bound(blur))
 }
 
 /// How far off positions may be in single precision.
-fn bound(error: Error, gap: Option<f64>) -> String {
-    let pixel = error.position / error.pixel;
-    let gap = gap.map_or_else(
+fn bound(blur: Blur) -> String {
+    let Blur {
+        position, pixels, ..
+    } = blur;
+    let gap = blur.gap.map_or_else(
         || "no two objects have a gap between them".to_owned(),
         |gap| {
-            let share = error.position / gap;
+            let share = position / gap;
             format!("{share:.1e} of the smallest gap, {gap:.3e} (allowed {GAP_SHARE})")
         },
     );
     format!(
-        "positions are off by at most {:.1e} = {pixel:.1e} of a pixel's width there (allowed \
-         {PIXEL_SHARE}); {gap}",
-        error.position
+        "positions are off by at most {position:.1e}, and by at most {pixels:.1e} of a pixel's width \
+         there (allowed {PIXEL_SHARE}); {gap}"
     )
 }
 
@@ -297,16 +297,15 @@ pub fn doubt(plan: &Plan) -> Option<String> {
         return None;
     };
     Some(match doubt {
-        Doubt::Bound { error, gap } => format!(
+        Doubt::Blur(blur) => format!(
             "double would have been taken, because in single {}",
-            bound(error, gap)
+            bound(blur)
         ),
-        Doubt::Implicit { error } => format!(
+        Doubt::Implicit(Blur { position, .. }) => format!(
             "double would have been taken: hits on implicit surfaces are proved in double and then \
-             rounded to single, which puts them off by up to {:.1e}, so that sheets closer than {:.1e} \
+             rounded to single, which puts them off by up to {position:.1e}, so that sheets closer than {:.1e} \
              may be taken one for the other",
-            error.position,
-            error.position / GAP_SHARE
+            position / GAP_SHARE
         ),
     })
 }

@@ -3,11 +3,10 @@
 //! [`needs`] reads what can happen off the scene; [`choose`] turns that and the user's wishes into
 //! decisions, in one table; [`build`] makes the flat tables of the loop; [`explain`] says why.
 
+pub mod bounds;
 pub mod build;
 pub mod choose;
 pub mod explain;
-pub mod extent;
-mod faces;
 pub mod needs;
 pub mod occluders;
 

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::extent::about_camera;
+use super::bounds::about_camera;
 use crate::math::affine::Affine;
 use crate::scene::{Light, Scene, Shape};
 use crate::shape::ShapeKind;
