@@ -238,6 +238,7 @@ pub mod inside {
     #[cfg(feature = "planted")]
     pub use etalon_lanes::planted;
     pub use etalon_lanes::{
-        camera, declare, field, integrate, light, material, math, root, sample, shape, spectrum,
+        camera, declare, doors, field, integrate, light, material, math, root, sample, shape,
+        spectrum,
     };
 }

@@ -22,12 +22,15 @@ mod lights;
 mod many_implicits;
 mod many_lights;
 mod many_objects;
+mod materials;
 mod metrics;
 mod mirror_chains;
 mod mistakes;
 mod occluders;
 mod oracle_primitives;
 mod oracle_support;
+#[cfg(feature = "planted")]
+mod phong_pictures;
 mod references;
 mod render_goal;
 mod rooms;

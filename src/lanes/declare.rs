@@ -35,6 +35,14 @@ impl Range {
         high: Bound::Unbounded,
     };
 
+    /// Numbers from `low` to `high`, both allowed.
+    pub const fn between(low: f64, high: f64) -> Self {
+        Self {
+            low: Bound::Included(low),
+            high: Bound::Included(high),
+        }
+    }
+
     /// Whether a number is allowed.
     pub fn contains(&self, number: f64) -> bool {
         (self.low, self.high).contains(&number)

@@ -8,6 +8,8 @@
 
 pub mod camera;
 pub mod declare;
+#[doc(hidden)]
+pub mod doors;
 pub mod field;
 pub mod integrate;
 pub mod light;

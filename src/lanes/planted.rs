@@ -1,7 +1,6 @@
 //! Deliberate mistakes in the loop itself, to see whether the statistical suite notices them: only
 //! in builds with the feature `planted`, which the renderer that ships has not.
 
-use crate::material::fresnel;
 use crate::math::lanes::{Lanes, Real, Scalar};
 
 /// What is done wrong.
@@ -29,14 +28,12 @@ pub fn light_weight<L: Lanes>(
     }
 }
 
-/// The reflectance of a conductor, as a function of cosine, n and k.
-pub fn reflectance<T: Scalar>(planted: Option<Planted>) -> impl Fn(T, T, T) -> T {
-    move |cosine, n, k| {
-        let [s, p] = fresnel::conductor_polarised(cosine, n, k);
-        if planted == Some(Planted::Polarisation) {
-            (s + s + p) * T::from_f64(1.0 / 3.0)
-        } else {
-            (s + p) * T::from_f64(0.5)
-        }
+/// The reflectance for unpolarised light, from those of both polarisations.
+#[inline(always)]
+pub fn unpolarised<T: Scalar>(planted: Option<Planted>, [s, p]: [T; 2]) -> T {
+    if planted == Some(Planted::Polarisation) {
+        (s + s + p) * T::from_f64(1.0 / 3.0)
+    } else {
+        (s + p) * T::from_f64(0.5)
     }
 }

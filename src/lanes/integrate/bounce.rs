@@ -9,9 +9,9 @@ use super::pool::{
     int_array,
 };
 use super::replay::{ScatteredVertex, Vertex};
-use super::scatter::Meeting;
+use super::scatter::{Meeting, Scattered};
 use super::surface::{Arrival, Surfaces, surfaces};
-use crate::material::{Event, MaterialKind};
+use crate::material::MaterialKind;
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 use crate::sample::Slot;
@@ -36,8 +36,10 @@ pub struct Step<'a, L: Lanes, const C: usize> {
     pub rungs: &'a mut Rungs,
     /// Rows of the paths that go on beyond `max_depth`.
     pub beyond_slots: &'a mut Vec<u32>,
+    /// The bsdf of each lane towards the sampled light, where the material is not Lambertian.
+    pub values: &'a mut [[L::Scalar; C]; WIDEST],
     /// The vertex being written down, of lane 0.
-    pub vertex: Option<Vertex>,
+    pub vertex: Option<&'a mut Vertex>,
     /// Where the spectra of each lane are.
     pub slots: [u32; WIDEST],
     /// Which row of every table holds the wavelengths.
@@ -72,6 +74,7 @@ pub fn bounce<L: Lanes, const C: usize>(
         rows,
         beyond_slots,
         rungs,
+        values,
         trace,
         ..
     } = workspace;
@@ -86,6 +89,7 @@ pub fn bounce<L: Lanes, const C: usize>(
         rows,
         rungs,
         beyond_slots,
+        values,
         vertex: None,
         slots: int_array(l, pool.int(l, IntField::Slot, at)),
         row: pool.int(l, IntField::Row, at),
@@ -107,18 +111,26 @@ pub fn bounce<L: Lanes, const C: usize>(
         pdf: pool.real(l, RealField::Pdf, 0, at),
         specular: has(l, step.flags, flags::SPECULAR),
     };
-    let (surface, going) = step.arrive(l, &arrival, active, trace.is_some());
+    let hit = active & !arrival.nearest.part.same(l.int(NOTHING));
+    if let Some(environment) = model.environment {
+        step.add(l, active & !hit, l.int(environment), l.real(1.0));
+    }
+    let surface = surfaces(l, model, &arrival, hit);
+    let mut vertex = trace.is_some().then(|| step.vertex(l, &arrival, &surface));
+    step.vertex = vertex.as_mut();
+    let going = step.arrive(l, &surface, hit);
     let meeting = Meeting {
         surface: &surface,
         wo: -ray.direction,
         normal: Vec3::select(l, surface.front, surface.normal, -surface.normal),
         going,
+        kinds: model.needs.materials,
     };
     let next = step.scatter(l, &meeting);
     let alive = active & step.roulette(l, going);
     step.note_end(l, &next, alive);
     step.keep(l, pool, &meeting, &next, (to, alive));
-    if let (Some(trace), Some(vertex)) = (trace, step.vertex) {
+    if let (Some(trace), Some(vertex)) = (trace, vertex) {
         trace.push(vertex);
     }
     alive.bits().count_ones() as usize
@@ -139,28 +151,13 @@ pub fn some_object(index: u32) -> Option<u32> {
 }
 
 impl<L: Lanes, const C: usize> Step<'_, L, C> {
-    /// Takes the light of what has been met, and decides which paths go on from there.
+    /// Takes the light of the surfaces that are hit, and decides which paths go on from there.
     #[inline(always)]
-    fn arrive(
-        &mut self,
-        l: L,
-        arrival: &Arrival<'_, L>,
-        active: L::Mask,
-        written_down: bool,
-    ) -> (Surfaces<L>, L::Mask) {
+    fn arrive(&mut self, l: L, surface: &Surfaces<L>, hit: L::Mask) -> L::Mask {
         let model = self.model;
-        let hit = active & !arrival.nearest.part.same(l.int(NOTHING));
-        if let Some(environment) = model.environment {
-            self.add(l, active & !hit, l.int(environment), l.real(1.0));
-        }
-        let surface = surfaces(l, model, arrival, hit);
-        if written_down {
-            self.vertex = Some(self.vertex(l, arrival, &surface));
-        }
         if model.needs.has(word::EMITS) {
             self.add(l, surface.emits, surface.emission, surface.emission_weight);
         }
-
         let scatters = hit & !surface.kind.same(l.int(MaterialKind::Black as u32));
         let beyond = has(l, self.flags, flags::BEYOND);
         let within = self.depth.plus(l.int(1)).below(l.int(model.max_depth));
@@ -172,7 +169,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             self.go_beyond(l, chosen);
             going = going | chosen;
         }
-        (surface, going)
+        going
     }
 
     /// Writes down how the paths go on, those that live.
@@ -182,13 +179,13 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         l: L,
         pool: &mut Pool<L::Scalar>,
         meeting: &Meeting<'_, L>,
-        next: &Event<L>,
+        next: &Scattered<L>,
         (to, alive): (usize, L::Mask),
     ) {
-        let Leaving { object, inward } = meeting.leaving(next.transmitted);
         let kept = self.flags & l.int(flags::TERMINATED | flags::BEYOND);
-        let flags =
-            kept | bit_where(l, inward, flags::INWARD) | bit_where(l, next.delta, flags::SPECULAR);
+        let flags = kept
+            | bit_where(l, next.inward, flags::INWARD)
+            | bit_where(l, next.specular, flags::SPECULAR);
         for (field, v) in [
             (RealField::Origin, meeting.surface.point),
             (RealField::Direction, next.direction),
@@ -199,7 +196,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         }
         pool.keep_real(l, RealField::Pdf, 0, to, (next.pdf, alive));
         for (field, x) in [
-            (IntField::Departure, object),
+            (IntField::Departure, meeting.surface.object),
             (IntField::Flags, flags),
             (IntField::Depth, self.depth.plus(l.int(1))),
             (IntField::Key, self.id.key),
@@ -245,10 +242,10 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
 
     /// Writes down how lane 0 goes on.
     #[inline(always)]
-    fn note_end(&mut self, l: L, next: &Event<L>, alive: L::Mask) {
+    fn note_end(&mut self, l: L, next: &Scattered<L>, alive: L::Mask) {
         if self.vertex.is_some() {
             let goes_on = alive.bits() & 1 == 1;
-            let specular = next.delta.bits() & 1 == 1;
+            let specular = next.specular.bits() & 1 == 1;
             let scattered = goes_on.then(|| ScatteredVertex {
                 direction: lane_vector(l, next.direction, 0),
                 pdf: (!specular).then(|| l.lane(next.pdf, 0).to_f64()),

@@ -104,6 +104,8 @@ pub struct Workspace<T, const C: usize> {
     pub rows: Rows<T, C>,
     /// Samples of this chunk whose paths went on.
     pub(super) beyond_slots: Vec<u32>,
+    /// The bsdf of each lane of a packet towards its sampled light.
+    pub(super) values: [[T; C]; WIDEST],
     /// X, Y, Z by sample.
     pub tristimulus: Vec<[T; 3]>,
     /// Which arithmetic decided.
@@ -121,6 +123,7 @@ impl<T: Scalar, const C: usize> Workspace<T, C> {
             pool: Pool::new(POOL),
             rows: Rows::new(2 * CHUNK),
             beyond_slots: Vec::new(),
+            values: [[T::default(); C]; WIDEST],
             tristimulus: Vec::new(),
             rungs: Rungs::default(),
             beyond: Beyond::default(),

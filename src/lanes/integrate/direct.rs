@@ -5,9 +5,9 @@ use super::bounce::{Step, some_object};
 use super::intersect::{Leaving, NOTHING, Shadow, lane_vector, occluded};
 use super::pool::{WIDEST, any, array, each};
 use super::replay::LightVertex;
-use super::scatter::Meeting;
+use super::scatter::{Meeting, Question};
 use crate::light::Towards;
-use crate::material::{Interface, Material, Transport, each_material};
+use crate::material::{Material, Transport, each_material};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::lookup::SMALL;
 use crate::math::vec3::Vec3;
@@ -82,20 +82,30 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         }
         let mut scatters = cosine.gt(zero);
         let mut across = l.mask(false);
-        each_material!(M => if M::SPREAD && !M::LAMBERTIAN && self.has::<M>() {
-            let own = m & meeting.of(l, M::KIND);
+        each_material!(M, KIND => if M::SPREAD && !M::LAMBERTIAN && meeting.kinds.contains(KIND) {
+            let own = m & meeting.of(l, KIND);
             if any(own) {
-                let (at, _) = self.interface::<M>(l, meeting, own);
-                let nowhere = Interface { lanes: l.mask(false), ..at };
-                let directions = [meeting.wo, direction];
-                let densities = M::evaluate(l, &nowhere, directions, Transport::Radiance, |_, _| {});
+                let Question { at, values, .. } = self.question::<M>(l, meeting, own);
+                let densities = M::evaluate(
+                    l,
+                    &at,
+                    [meeting.wo, direction],
+                    Transport::Radiance,
+                    #[inline(always)]
+                    |i, value| values[i] = *value,
+                );
                 weight = l.select(own, light.weight(l, cosine, densities.pdf), weight);
-                scatters = (scatters & !own) | (own & densities.pdf.gt(zero));
-                across = across | (own & cosine.lt(zero));
+                if M::REFRACTS {
+                    scatters = scatters | (own & densities.pdf.gt(zero));
+                    across = across | (own & cosine.lt(zero));
+                }
             }
         });
         let asked = m & light.towards.valid & scatters & weight.gt(zero);
-        let leaving = meeting.leaving(across);
+        let leaving = Leaving {
+            object: meeting.surface.object,
+            inward: meeting.inward(across),
+        };
         let arrives = self.arrives(l, meeting.surface.point, &leaving, &light, (asked, weight));
         Lit {
             arrives,

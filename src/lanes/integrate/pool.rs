@@ -92,8 +92,8 @@ impl<T: Scalar, const C: usize> Carried<T, C> {
     /// Multiplies the throughput.
     #[inline(always)]
     pub fn weigh(&mut self, factors: &[T; C]) {
-        for c in 0..C {
-            self.throughput[c] = self.throughput[c] * factors[c];
+        for (throughput, factor) in self.throughput.iter_mut().zip(factors) {
+            *throughput = *throughput * *factor;
         }
     }
 

@@ -2,13 +2,12 @@
 
 use super::bounce::Step;
 use super::direct::Lit;
-use super::intersect::Leaving;
 use super::pool::{Carried, WIDEST, any, array, bit_where, each, flags, has};
 use super::surface::{Surfaces, for_each_distinct};
 use crate::material::diffuse::reflected;
 use crate::material::{
-    Event, Interface, Material, MaterialKind, Medium, NUMBERS, Transport, Variates, Wavelengths,
-    each_material,
+    Event, Interface, Material, MaterialKind, MaterialKinds, Medium, NUMBERS, Transport, Variates,
+    Wavelengths, each_material,
 };
 use crate::math::lanes::{Int, Lanes, Mask, Scalar};
 use crate::math::vec3::Vec3;
@@ -24,6 +23,8 @@ pub struct Meeting<'a, L: Lanes> {
     pub normal: Vec3<L::Real>,
     /// Lanes that go on from here.
     pub going: L::Mask,
+    /// The materials that the loop has.
+    pub kinds: MaterialKinds,
 }
 
 impl<L: Lanes> Meeting<'_, L> {
@@ -33,42 +34,79 @@ impl<L: Lanes> Meeting<'_, L> {
         self.going & self.surface.kind.same(l.int(kind as u32))
     }
 
-    /// The start of rays in directions on the side of wo, or across the surface.
+    /// Whether rays go into the object, those that cross its surface and the others.
     #[inline(always)]
-    pub fn leaving(&self, across: L::Mask) -> Leaving<L> {
+    pub fn inward(&self, across: L::Mask) -> L::Mask {
         let front = self.surface.front;
-        Leaving {
-            object: self.surface.object,
-            inward: (front & across) | !(front | across),
+        (front & across) | !(front | across)
+    }
+}
+
+/// What a material is asked about, and where its answers go.
+pub struct Question<'a, L: Lanes, const C: usize> {
+    /// The surfaces as it sees them.
+    pub at: Interface<'a, L, C>,
+    /// Throughputs and radiances.
+    pub paths: &'a mut [Carried<L::Scalar, C>],
+    /// [`Step::values`].
+    pub values: &'a mut [[L::Scalar; C]; WIDEST],
+}
+
+/// The rays that go on.
+pub struct Scattered<L: Lanes> {
+    /// Unit directions.
+    pub direction: Vec3<L::Real>,
+    /// Their densities, sr⁻¹.
+    pub pdf: L::Real,
+    /// They had no alternative.
+    pub specular: L::Mask,
+    /// They go into the objects.
+    pub inward: L::Mask,
+}
+
+impl<L: Lanes> Scattered<L> {
+    /// Takes over the events of a material.
+    #[inline(always)]
+    fn take<M: Material>(
+        &mut self,
+        l: L,
+        meeting: &Meeting<'_, L>,
+        own: L::Mask,
+        event: &Event<L>,
+    ) {
+        self.direction = Vec3::select(l, own, event.direction, self.direction);
+        // The loop has no use for the probabilities of delta events.
+        if M::SPREAD {
+            self.pdf = l.select(own, event.pdf, self.pdf);
+            self.specular = self.specular & !(own & !event.delta);
+        }
+        if M::REFRACTS {
+            self.inward = (self.inward & !own) | (meeting.inward(event.transmitted) & own);
         }
     }
 }
 
 impl<L: Lanes, const C: usize> Step<'_, L, C> {
-    /// Whether the loop has a material at all.
-    #[inline(always)]
-    pub fn has<M: Material>(&self) -> bool {
-        self.model.needs.materials.contains(M::KIND)
-    }
-
     /// Samples the lights and the surfaces; throughput becomes that of the scattered rays.
     #[inline(always)]
-    pub fn scatter(&mut self, l: L, meeting: &Meeting<'_, L>) -> Event<L> {
-        let mut next = Event {
+    pub fn scatter(&mut self, l: L, meeting: &Meeting<'_, L>) -> Scattered<L> {
+        let mut next = Scattered {
+            direction: -meeting.wo,
             pdf: l.real(0.0),
-            ..Event::reflection(l, -meeting.wo)
+            specular: l.mask(true),
+            inward: !meeting.surface.front,
         };
         let mut spread = l.mask(false);
-        each_material!(M => if M::SPREAD && self.has::<M>() {
-            spread = spread | meeting.of(l, M::KIND);
+        each_material!(M, KIND => if M::SPREAD && meeting.kinds.contains(KIND) {
+            spread = spread | meeting.of(l, KIND);
         });
         let mut direction = [l.real(0.0); 2];
         let mut lit = None;
         if any(spread) {
             (direction, lit) = self.light(l, meeting, spread);
         }
-        each_material!(M => if (M::SPREAD || M::DELTA) && self.has::<M>() {
-            let own = meeting.of(l, M::KIND);
+        each_material!(M, KIND => if (M::SPREAD || M::DELTA) && meeting.kinds.contains(KIND) {
+            let own = meeting.of(l, KIND);
             if any(own) {
                 let event = if M::LAMBERTIAN {
                     self.reflect(l, own, meeting.surface.spectra[0], &lit);
@@ -76,7 +114,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
                 } else {
                     self.sample::<M>(l, meeting, (own, direction), &lit)
                 };
-                take::<L, M>(l, own, &event, &mut next);
+                next.take::<M>(l, meeting, own, &event);
             }
         });
         next
@@ -150,7 +188,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         if M::SPREAD
             && let Some(lit) = lit
         {
-            self.add_lit::<M>(l, meeting, own, lit);
+            self.receive(l, own, lit);
         }
         let choice = if M::CHOOSES {
             let sequence = &self.model.sequence;
@@ -159,7 +197,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             l.real(0.0)
         };
         let slots = self.slots;
-        let (at, paths) = self.interface::<M>(l, meeting, own);
+        let Question { at, paths, .. } = self.question::<M>(l, meeting, own);
         let event = M::sample(
             l,
             &at,
@@ -175,36 +213,26 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         event
     }
 
-    /// Adds what came from the sampled lights by way of a material's part that is not delta.
+    /// Adds what came from the sampled lights by way of the part that is not delta.
     #[inline(always)]
-    fn add_lit<M: Material>(&mut self, l: L, meeting: &Meeting<'_, L>, own: L::Mask, lit: &Lit<L>) {
-        let arrives = own & lit.arrives;
+    fn receive(&mut self, l: L, own: L::Mask, lit: &Lit<L>) {
         let emissions = self.table_rows(l, lit.spectrum);
         let weights = array(l, lit.weight);
-        let slots = self.slots;
-        let (at, paths) = self.interface::<M>(l, meeting, arrives);
-        let table = at.wavelengths.bank;
-        M::evaluate(
-            l,
-            &at,
-            [meeting.wo, lit.direction],
-            Transport::Radiance,
-            #[inline(always)]
-            |i, value| {
-                let emission = &table[emissions[i] as usize];
-                paths[slots[i] as usize].receive(weights[i], value, emission);
-            },
-        );
+        let table = self.model.spectra.rows::<C>();
+        for i in each((own & lit.arrives).bits()) {
+            let path = &mut self.rows.paths[self.slots[i] as usize];
+            path.receive(weights[i], &self.values[i], &table[emissions[i] as usize]);
+        }
     }
 
-    /// What a material sees of surfaces, and the paths.
+    /// What a material is asked about.
     #[inline(always)]
-    pub fn interface<M: Material>(
+    pub fn question<M: Material>(
         &mut self,
         l: L,
         meeting: &Meeting<'_, L>,
         lanes: L::Mask,
-    ) -> (Interface<'_, L, C>, &mut [Carried<L::Scalar, C>]) {
+    ) -> Question<'_, L, C> {
         let surface = meeting.surface;
         let [n, k] = surface.spectra;
         let rows = &mut *self.rows;
@@ -247,18 +275,10 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
                 },
             );
         }
-        (at, &mut rows.paths)
-    }
-}
-
-/// Takes the lanes of a material's event over into the whole packet's.
-#[inline(always)]
-fn take<L: Lanes, M: Material>(l: L, own: L::Mask, event: &Event<L>, next: &mut Event<L>) {
-    next.direction = Vec3::select(l, own, event.direction, next.direction);
-    next.transmitted = (next.transmitted & !own) | (event.transmitted & own);
-    // The loop has no use for the probabilities of delta events.
-    if M::SPREAD {
-        next.pdf = l.select(own, event.pdf, next.pdf);
-        next.delta = next.delta & !(own & !event.delta);
+        Question {
+            at,
+            paths: &mut rows.paths,
+            values: self.values,
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! A surface that reflects nothing; where a path meets it, it ends.
 
-use super::{Event, Interface, Lanes, Material, MaterialKind, Transport, Variates, Vec3};
+use super::{Event, Interface, Lanes, Material, Transport, Variates, Vec3};
 
 use crate::declare::{Declaration, Quantity};
 
@@ -8,7 +8,6 @@ use crate::declare::{Declaration, Quantity};
 pub struct Black;
 
 impl Material for Black {
-    const KIND: MaterialKind = MaterialKind::Black;
     const DECLARATION: Declaration = Declaration::new("black", "no reflection", Quantity::True);
     const WORDS: &'static str = "black";
 

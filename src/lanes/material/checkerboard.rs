@@ -14,7 +14,6 @@ use crate::math::lanes::{Real, inlined};
 pub struct Checkerboard;
 
 impl Material for Checkerboard {
-    const KIND: MaterialKind = MaterialKind::Checkerboard;
     const DECLARATION: Declaration = Declaration {
         beside: &[Parameter {
             key: "cell",

@@ -1,16 +1,15 @@
 //! A smooth metal, on both sides.
 
 use super::interface::unit_again;
-use super::{Event, Interface, Lanes, Material, MaterialKind, Transport, Variates, Vec3};
+use super::{Event, Interface, Lanes, Material, Transport, Variates, Vec3, fresnel};
 use crate::declare::{Declaration, Quantity};
 use crate::math::lanes::Mask;
 use crate::math::packet::{array, each};
 
-/// Reflects by [`conductor`](super::fresnel::conductor).
+/// Reflects by [`fresnel::conductor`].
 pub struct Conductor;
 
 impl Material for Conductor {
-    const KIND: MaterialKind = MaterialKind::Conductor;
     const DECLARATION: Declaration = Declaration::new("mirror", "metal", Quantity::Metal);
     const WORDS: &'static str = "metal";
     const BRANCH: Option<&'static str> = Some("metals");
@@ -31,9 +30,12 @@ impl Material for Conductor {
         let outside = at.index(l, at.outside);
         let cosines = array(l, cosine);
         #[cfg(not(feature = "planted"))]
-        let reflected = super::fresnel::conductor::<L::Scalar>;
+        let reflected = fresnel::conductor::<L::Scalar>;
         #[cfg(feature = "planted")]
-        let reflected = crate::planted::reflectance(at.planted);
+        let reflected = |cosine, n, k| {
+            let polarised = fresnel::conductor_polarised(cosine, n, k);
+            crate::planted::unpolarised(at.planted, polarised)
+        };
         for i in each(at.lanes.bits()) {
             let (n, k) = (at.values(i, &indices), at.values(i, &extinctions));
             let around = outside.at(i);

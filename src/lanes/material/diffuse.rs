@@ -3,9 +3,7 @@
 
 use std::f64::consts::FRAC_1_PI;
 
-use super::{
-    Densities, Event, Interface, Lanes, Material, MaterialKind, Transport, Variates, Vec3,
-};
+use super::{Densities, Event, Interface, Lanes, Material, Transport, Variates, Vec3};
 use crate::declare::{Declaration, Quantity, Role};
 use crate::math::lanes::{Mask, Real, Scalar};
 use crate::math::packet::each;
@@ -15,7 +13,6 @@ use crate::sample::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
 pub struct Diffuse;
 
 impl Material for Diffuse {
-    const KIND: MaterialKind = MaterialKind::Diffuse;
     const DECLARATION: Declaration =
         Declaration::new("diffuse", "albedo", Quantity::Spectrum(Role::Reflectance));
     const WORDS: &'static str = "diffuse";

@@ -1,7 +1,7 @@
 //! A smooth boundary between two dielectrics.
 
 use super::interface::unit_again;
-use super::{Event, Interface, Lanes, Material, MaterialKind, Transport, Variates, Vec3, fresnel};
+use super::{Event, Interface, Lanes, Material, Transport, Variates, Vec3, fresnel};
 use crate::declare::{Declaration, Quantity};
 use crate::math::lanes::{Mask, Real, Scalar, WIDEST};
 use crate::math::packet::{array, each};
@@ -11,7 +11,6 @@ use crate::math::packet::{array, each};
 pub struct Glass;
 
 impl Material for Glass {
-    const KIND: MaterialKind = MaterialKind::Glass;
     const DECLARATION: Declaration = Declaration::new("glass", "index inside", Quantity::Glass);
     const WORDS: &'static str = "glass";
     const BRANCH: Option<&'static str> = Some("glass");
@@ -151,9 +150,9 @@ impl<T: Scalar, const C: usize> Choice<T, C> {
             return (own, reflectances);
         }
         let mut sum = T::default();
-        for c in 0..C {
-            reflectances[c] = fresnel::dielectric_reflectance(self.cosine, self.eta[c]);
-            sum = sum + reflectances[c];
+        for (reflectance, eta) in reflectances.iter_mut().zip(self.eta) {
+            *reflectance = fresnel::dielectric_reflectance(self.cosine, eta);
+            sum = sum + *reflectance;
         }
         (sum * T::from_f64(1.0 / C as f64), reflectances)
     }

@@ -10,8 +10,6 @@ use crate::declare::Declaration;
 /// wo and wi are unit vectors away from the surface, wo towards where the path comes from. What is
 /// said of lanes outside of [`Interface::lanes`] means nothing.
 pub trait Material {
-    /// Its place in the list.
-    const KIND: MaterialKind;
     /// Its keys in scene files; the values come in their order.
     const DECLARATION: Declaration;
     /// What `info` calls an object of it.
@@ -66,8 +64,8 @@ pub trait Material {
         weigh: impl FnMut(usize, &[L::Scalar; C]),
     ) -> Event<L>;
 
-    /// The part that is not delta, from wo to wi. `value` is called with each lane where it is not 0
-    /// and the bsdf, sr⁻¹, without the cosine.
+    /// The part that is not delta, from wo to wi. `value` is called with each lane and the bsdf, sr⁻¹,
+    /// without the cosine.
     #[inline(always)]
     fn evaluate<L: Lanes, const C: usize>(
         l: L,
@@ -85,12 +83,13 @@ pub trait Material {
 }
 
 macro_rules! materials {
-    ($($kind:ident in $module:ident,)*) => {
+    ($($(#[$attribute:meta])? $kind:ident in $module:ident,)*) => {
         /// The materials.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         #[repr(u32)]
         pub enum MaterialKind {
             $(
+                $(#[$attribute])?
                 #[doc = concat!("See [`", stringify!($kind), "`](super::", stringify!($module), "::", stringify!($kind), ").")]
                 $kind,
             )*
@@ -98,14 +97,18 @@ macro_rules! materials {
 
         impl MaterialKind {
             /// All of them, in the order in which messages list them.
-            pub const ALL: &'static [Self] = &[$(Self::$kind,)*];
+            pub const ALL: &'static [Self] = &[$($(#[$attribute])? Self::$kind,)*];
 
             /// Their keys in scene files; some have one in common.
             pub const KEYS: &'static [&'static str] =
-                &[$(<super::$module::$kind as Material>::DECLARATION.main.key,)*];
+                &[$(
+                    $(#[$attribute])?
+                    <super::$module::$kind as Material>::DECLARATION.main.key,
+                )*];
         }
 
         $(
+            $(#[$attribute])?
             const _: () = assert!(
                 <super::$module::$kind as Material>::DECLARATION.spectra() <= SPECTRA
             );
@@ -115,12 +118,16 @@ macro_rules! materials {
         macro_rules! of {
             ($self:expr, $item:ident) => {
                 match $self {
-                    $(MaterialKind::$kind => <super::$module::$kind as Material>::$item,)*
+                    $(
+                        $(#[$attribute])?
+                        MaterialKind::$kind => <super::$module::$kind as Material>::$item,
+                    )*
                 }
             };
             ($self:expr, $item:ident $item_arguments:tt) => {
                 match $self {
                     $(
+                        $(#[$attribute])?
                         MaterialKind::$kind => {
                             <super::$module::$kind as Material>::$item $item_arguments
                         }
@@ -129,11 +136,14 @@ macro_rules! materials {
             };
         }
 
-        /// Does something for each material that scatters by itself, its type called `$material`.
+        /// Does something for each material that scatters by itself; its type and its kind are called
+        /// `$material` and `$own`.
         macro_rules! each_material {
-            ($material:ident => $do:expr) => {
-                $({
+            ($material:ident, $own:ident => $do:expr) => {
+                $($(#[$attribute])? {
                     type $material = $crate::material::$module::$kind;
+                    const $own: $crate::material::MaterialKind =
+                        $crate::material::MaterialKind::$kind;
                     if <$material as $crate::material::Material>::TEXTURE_OF.is_none() {
                         $do
                     }
@@ -141,6 +151,22 @@ macro_rules! materials {
             };
         }
         pub(crate) use each_material;
+
+        /// Evaluates an expression for the type of a kind, called `$material`.
+        macro_rules! with_material {
+            ($of:expr, $material:ident => $do:expr) => {
+                match $of {
+                    $(
+                        $(#[$attribute])?
+                        $crate::material::MaterialKind::$kind => {
+                            type $material = $crate::material::$module::$kind;
+                            $do
+                        }
+                    )*
+                }
+            };
+        }
+        pub(crate) use with_material;
     };
 }
 
@@ -151,6 +177,8 @@ materials! {
     Glass in glass,
     Checkerboard in checkerboard,
     Black in black,
+    #[cfg(feature = "planted")]
+    Phong in phong,
 }
 
 impl MaterialKind {

@@ -2,7 +2,7 @@
 //! pictures are known in closed form.
 
 use super::interface::unit_again;
-use super::{Event, Interface, Lanes, Material, MaterialKind, Transport, Variates, Vec3};
+use super::{Event, Interface, Lanes, Material, Transport, Variates, Vec3};
 use crate::declare::{Declaration, Quantity, Role};
 use crate::math::lanes::Mask;
 use crate::math::packet::each;
@@ -11,7 +11,6 @@ use crate::math::packet::each;
 pub struct Mirror;
 
 impl Material for Mirror {
-    const KIND: MaterialKind = MaterialKind::Mirror;
     const DECLARATION: Declaration = Declaration {
         within: Some("ideal"),
         ..Declaration::new(

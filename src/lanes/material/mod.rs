@@ -13,13 +13,14 @@ pub mod glass;
 pub mod interface;
 pub mod kind;
 pub mod mirror;
+pub mod phong;
 pub mod record;
 
 pub use interface::{Densities, Event, Interface, Medium, Transport, Variates, Wavelengths};
 pub use kind::{Material, MaterialKind, MaterialKinds};
 pub use record::{NUMBERS, Record, SPECTRA, Surface};
 
-pub(crate) use kind::each_material;
+pub(crate) use kind::{each_material, with_material};
 
 use crate::math::lanes::Lanes;
 use crate::math::vec3::Vec3;

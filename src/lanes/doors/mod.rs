@@ -1,0 +1,3 @@
+//! Ways in for tests: functions that are not generic, so that whoever calls them compiles no lanes.
+
+pub mod material;
