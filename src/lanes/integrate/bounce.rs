@@ -3,6 +3,7 @@
 use super::chunk::{CHUNK, Workspace};
 use super::intersect::{Leaving, NOTHING, Rungs, lane_vector, nearest};
 use super::model::Model;
+use super::parts::word;
 use super::pool::{
     Carried, IntField, Pool, RealField, Rows, WIDEST, any, array, bit_where, each, flags, has,
     int_array,
@@ -154,7 +155,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     #[inline(always)]
     fn arrive(&mut self, l: L, surface: &Surfaces<L>, hit: L::Mask) -> L::Mask {
         let model = self.model;
-        if model.needs.emission {
+        if model.needs.has(word::EMITS) {
             self.add(l, surface.emits, surface.emission, surface.emission_weight);
         }
         let scatters = hit & !surface.kind.same(l.int(MaterialKind::Black as u32));
