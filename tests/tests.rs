@@ -31,6 +31,7 @@ mod oracle_primitives;
 mod oracle_support;
 #[cfg(feature = "planted")]
 mod phong_pictures;
+mod plan_bounds;
 mod plan_full;
 mod references;
 mod render_goal;
