@@ -121,7 +121,7 @@ pub fn bounce<L: Lanes, const C: usize>(
     let going = step.arrive(l, &surface, hit);
     let meeting = Meeting {
         surface: &surface,
-        wo: -ray.direction,
+        direction: ray.direction,
         normal: Vec3::select(l, surface.front, surface.normal, -surface.normal),
         going,
         kinds: model.needs.materials,

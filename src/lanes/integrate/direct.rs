@@ -89,7 +89,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
                 let densities = M::evaluate(
                     l,
                     &at,
-                    [meeting.wo, direction],
+                    [meeting.wo(), direction],
                     Transport::Radiance,
                     #[inline(always)]
                     |i, value| values[i] = *value,
