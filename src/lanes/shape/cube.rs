@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::kind::{Canonical, Emitter, Question};
+use super::kind::{Canonical, Emitter, Length, Question};
 use super::lanes::part::{Part, PartKind};
 use super::lanes::{self, Enclosure, LaneRay, LaneShape};
 use super::line::{LocalRay, Span};
@@ -16,6 +16,14 @@ pub struct Cube;
 
 impl Canonical for Cube {
     const NAME: &'static str = "cube";
+    const LENGTHS: &'static [Length] = &[
+        Length::edge("side", &[0, 1, 2]),
+        Length {
+            each: true,
+            default: None,
+            ..Length::edge("size", &[0, 1, 2])
+        },
+    ];
     const EMITTER: Emitter = Emitter::Cube;
     const FACES: &'static [(usize, &'static [f64])] =
         &[(0, &[-1.0, 1.0]), (1, &[-1.0, 1.0]), (2, &[-1.0, 1.0])];

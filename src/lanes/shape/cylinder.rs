@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::kind::{Canonical, Emitter, Question};
+use super::kind::{Canonical, Emitter, Length, Question};
 use super::lanes::{self, Enclosure, LaneShape, LaneSurface};
 use super::line::{Crossing, Fraction, LocalRay, Span};
 use super::slab::{Along, Coordinate, Slab, cut, lane_slab, reach, slab};
@@ -17,6 +17,7 @@ pub struct Cylinder;
 
 impl Canonical for Cylinder {
     const NAME: &'static str = "cylinder";
+    const LENGTHS: &'static [Length] = &[Length::radius(&[0, 1]), Length::edge("height", &[2])];
     const EMITTER: Emitter = Emitter::Cylinder;
     const FACES: &'static [(usize, &'static [f64])] = &[(2, &[-1.0, 1.0])];
     const ROUND: Option<usize> = Some(2);

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::kind::{Canonical, Emitter, Question};
+use super::kind::{Canonical, Emitter, Length, Question};
 use super::lanes::part::{Part, PartKind};
 use super::lanes::{self, Enclosure, LaneRay, LaneShape, LaneSurface};
 use super::line::{Crossing, LocalRay, Span};
@@ -18,6 +18,8 @@ pub struct Sphere;
 
 impl Canonical for Sphere {
     const NAME: &'static str = "sphere";
+    const LENGTHS: &'static [Length] = &[Length::radius(&[0, 1, 2])];
+    const CENTERED: bool = true;
     const EMITTER: Emitter = Emitter::Sphere;
     const ROUND: Option<usize> = Some(3);
 
