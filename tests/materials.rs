@@ -64,7 +64,7 @@ impl Case {
 }
 
 /// Numbers in a range, from one end to the other.
-pub fn numbers(range: &Range) -> [f64; 3] {
+fn numbers(range: &Range) -> [f64; 3] {
     let end = |bound: Bound<f64>| match bound {
         Bound::Included(x) | Bound::Excluded(x) => Some(x),
         Bound::Unbounded => None,
@@ -631,7 +631,7 @@ fn lambertian_surfaces_are_lit_alike_the_short_way_and_the_general() {
 }
 
 /// A material as it is written with everything that it declares.
-pub fn written(declaration: &Declaration, number: impl Fn(&Range) -> f64) -> String {
+fn written(declaration: &Declaration, number: impl Fn(&Range) -> f64) -> String {
     let value = |quantity: Quantity| match quantity {
         Quantity::True => "true".to_owned(),
         Quantity::Number { range, .. } => format!("{:?}", number(&range)),

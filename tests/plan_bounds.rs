@@ -8,19 +8,15 @@
 use std::fmt::Write as _;
 
 use etalon::inside::integrate::chunk::Request;
-use etalon::inside::material::MaterialKind;
 use etalon::inside::math::instructions::{Instructions, Precision};
 use etalon::inside::math::lanes::Scalar;
 use etalon::inside::plan::bounds::gaps::{smallest, smallest_pairwise};
 use etalon::inside::plan::bounds::{Blur, sites};
 use etalon::inside::render::replay;
-use etalon::inside::shape::ShapeKind;
-use etalon::{First, Plan, Ray, Render, Scene, Tracer};
+use etalon::{First, Plan, Ray, Scene, Tracer};
 use glam::DVec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-
-use crate::materials::{numbers, written};
 
 /// Pixels of a picture's side.
 const SIZE: u32 = 64;
@@ -248,8 +244,6 @@ struct Tally {
     edge: usize,
     /// Inner hits that single precision has on another object, or farther off than the bound.
     off: usize,
-    /// The largest error, over the bound.
-    largest: f64,
     /// Rays that single precision takes past what double meets, or the other way round.
     other: usize,
 }
@@ -345,7 +339,6 @@ fn met(seed: u64, share: f64) -> Tally {
             let surface = beside_surface(&tracer, single.point + from, single.normal, 8.0 * length);
             let error = across.length().max(surface);
             let ratio = error / length;
-            tally.largest = tally.largest.max(ratio);
             if single.object != double.object || ratio > share {
                 tally.off += 1;
             }
@@ -357,55 +350,10 @@ fn met(seed: u64, share: f64) -> Tally {
 #[test]
 fn single_meets_what_double_does_within_the_bound() {
     let tally = met(3, 1.0);
-    eprintln!("{tally:?}");
     assert!(tally.inner > 1000, "{tally:?}");
     assert_eq!(tally.off, 0, "{tally:?}");
     // A hundredth of a pixel about an edge: at most one ray in a hundred comes so close.
     assert!(tally.edge + tally.other < tally.inner / 100, "{tally:?}");
-    for k in 1..5 {
-        eprintln!("{:?}", met(3, 0.25f64.powi(k)));
-    }
-}
-
-/// The bits of a picture with and without what the plan leaves out.
-fn pictures(text: &str) -> [Vec<u32>; 2] {
-    [false, true].map(|full| {
-        let scene = Scene::parse(text).unwrap();
-        let plan = Plan::new(&scene, full).unwrap();
-        let render = Render::planned(scene, plan);
-        let picture = render.picture(&render.run()).unwrap();
-        let values = ["R", "G", "B"].map(|name| picture.floats(name).unwrap().to_vec());
-        values.concat().iter().map(|x| x.to_bits()).collect()
-    })
-}
-
-#[test]
-fn a_full_plan_gives_the_bits_of_the_reduced_one() {
-    let head = "environment = 1\ncamera = { from = [0, 1, 6], to = [0, 0, 0], fov = 40 }\n\
-                image = { size = [12, 12], spp = 4 }\n";
-    let object = |shape: &str, material: &str| {
-        format!("[[object]]\nshape = {shape}\nmaterial = \"{material}\"\n")
-    };
-    let lit = "lamp = { emit = 2 }\n";
-    let mut scenes = Vec::new();
-    for kind in MaterialKind::ALL {
-        let material = written(&kind.declaration(), |range| numbers(range)[1]);
-        let material = format!("[materials]\nm = {material}\n");
-        for shape in ShapeKind::NAMES.iter().map(|name| format!("{name:?}")) {
-            let one = object(&shape, "m");
-            scenes.push(format!("{head}{material}{one}"));
-            let lamp = object(&shape, "lamp");
-            let lamp = format!("{lamp}transform = [{{ translate = [2, 0, 0] }}]\n");
-            scenes.push(format!("{head}{material}{lit}{one}{lamp}"));
-        }
-        let torus = object("{ implicit = \"torus\" }", "m");
-        scenes.push(format!("{head}{material}{torus}"));
-    }
-    let reduced = scenes.iter().filter(|text| {
-        let [own, full] = pictures(text);
-        assert!(own == full, "{text}");
-        let scene = Scene::parse(text).unwrap();
-        Plan::new(&scene, false).unwrap().needs() != Plan::new(&scene, true).unwrap().needs()
-    });
-    assert_eq!(reduced.count(), scenes.len());
+    // Planted: a quarter of the bound.
+    assert!(met(3, 0.25).off > 0);
 }

@@ -1,7 +1,7 @@
 //! How far off positions may be, and what that must be small against.
 //!
-//! [`positions`] bounds the error of a hit, [`pixels`] sets it against the width of the pixel that sees
-//! it, and [`gaps`] finds the smallest distance between two objects. Each is an extreme over all
+//! `positions` bounds the error of a hit, `pixels` finds how near the pixels are that see it, and
+//! [`gaps`] finds the smallest distance between two objects. Each is an extreme over all
 //! objects by itself, so that another object can only make it worse.
 
 mod faces;
