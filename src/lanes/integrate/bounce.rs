@@ -55,7 +55,6 @@ pub struct Step<'a, L: Lanes, const C: usize> {
 /// Where in the pool a packet stands, and where its survivors go.
 #[derive(Debug, Clone, Copy)]
 pub struct Places {
-    /// The packet.
     pub at: usize,
     /// Its survivors, not after it.
     pub to: usize,

@@ -35,7 +35,6 @@ pub struct Sampled<L: Lanes> {
     pub towards: Towards<L>,
     /// Spectra of the lights.
     pub spectrum: L::Int,
-    /// Their objects.
     pub object: L::Int,
     /// Scattered rays can hit them.
     pub extended: L::Mask,

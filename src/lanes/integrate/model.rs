@@ -110,7 +110,6 @@ pub struct Model<T: Scalar> {
     pub implicits: Vec<(u32, LaneImplicit<T>)>,
     /// What hits look like, by part.
     pub parts: Parts<T>,
-    /// By object.
     pub appearances: Vec<Appearance<T>>,
     /// Samplable lights.
     pub lights: Vec<LaneLight<T>>,

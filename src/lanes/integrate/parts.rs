@@ -14,7 +14,6 @@ pub mod word {
     pub const KIND: u32 = 0xff;
     /// Two parallel faces.
     pub const FACES: u32 = 1 << 8;
-    /// A ball.
     pub const BALL: u32 = 1 << 9;
     /// A shape that computes its own surface.
     pub const OTHER: u32 = 1 << 10;
@@ -69,7 +68,6 @@ pub struct Look<R, I> {
     pub light: I,
 }
 
-/// One part.
 pub type Entry<T> = Look<T, u32>;
 
 /// The entries by column, where they are few.
@@ -164,7 +162,6 @@ fn with<V: Copy>(column: &[V; SMALL], k: usize, value: V) -> [V; SMALL] {
 /// All parts of a scene.
 #[derive(Debug, Clone, Default)]
 pub struct Parts<T> {
-    /// By number.
     pub entries: Vec<Entry<T>>,
     /// Number of each object's first part.
     pub first: Vec<u32>,

@@ -39,7 +39,6 @@ pub struct Surfaces<L: Lanes> {
 
 /// Rays that have come to surfaces.
 pub struct Arrival<'a, L: Lanes> {
-    /// The rays.
     pub ray: &'a LaneRay<L>,
     /// What they come from.
     pub leaving: &'a Leaving<L>,

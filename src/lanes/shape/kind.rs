@@ -29,7 +29,6 @@ pub enum Emitter {
 /// A length that scene files may give a shape: scene units, greater than 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Length {
-    /// Its key.
     pub key: &'static str,
     /// The canonical axes that it stretches.
     pub axes: &'static [usize],
@@ -70,7 +69,6 @@ impl Length {
 pub struct Question<'a, L: Lanes> {
     /// The placed shape.
     pub shape: &'a LaneShape<L::Scalar>,
-    /// The rays.
     pub ray: &'a LaneRay<L>,
     /// Lanes whose answer counts.
     pub asked: L::Mask,

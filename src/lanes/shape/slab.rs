@@ -58,9 +58,7 @@ pub fn cut<N: Number>(ray: &LocalRay<N>, mut span: Span, faces: &Span) -> Option
 /// Crossings of one slab |x| ≤ 1 of the local ray, with bounds.
 #[derive(Clone, Copy)]
 pub struct LaneSlab<L: Lanes> {
-    /// Entry.
     pub near: Enclosure<L>,
-    /// Exit.
     pub far: Enclosure<L>,
     /// Lanes that may run along the slab, for which the bounds mean nothing.
     pub parallel: L::Mask,
@@ -69,9 +67,7 @@ pub struct LaneSlab<L: Lanes> {
 /// One coordinate of the lines, o + t d, with bounds of the errors of both numbers.
 #[derive(Clone, Copy)]
 pub struct Coordinate<L: Lanes> {
-    /// o.
     pub origin: L::Real,
-    /// d.
     pub direction: L::Real,
     /// What o is off by at most.
     pub origin_error: L::Real,

@@ -79,9 +79,7 @@ impl Canonical for Sphere {
 /// A sphere whose placement only scales it alike along all axes and moves it.
 #[derive(Debug, Clone, Copy)]
 pub struct Ball<T> {
-    /// Its centre.
     pub centre: [T; 3],
-    /// Its radius.
     pub radius: T,
     pub(in crate::shape) radius_squared: T,
     /// 6u (|c| + r): what the centre's rounding and the ray's cost beside 6u max|o|.
@@ -139,7 +137,6 @@ pub trait Asked<L: Lanes> {
     fn centre(&self, l: L) -> Vec3<L::Real>;
     /// [`Ball::radius`].
     fn radius(&self, l: L) -> L::Real;
-    /// Its square.
     fn radius_squared(&self, l: L) -> L::Real;
     /// [`Ball::offset_error`].
     fn offset_error(&self, l: L) -> L::Real;
