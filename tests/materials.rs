@@ -568,7 +568,7 @@ fn too_dense(subject: Subject, setting: &Setting, wi: &[DVec3]) -> Vec<Evaluatio
 
 fn too_heavy(subject: Subject, setting: &Setting, u: &[[f64; 3]]) -> Vec<Sample> {
     let heavier = |event: Sample| Sample {
-        weight: event.weight.map(|weight| 1.01 * weight),
+        weight: event.weight.map(|weight| 1.05 * weight),
         pdf: if event.delta {
             event.pdf * 0.9
         } else {
