@@ -408,6 +408,29 @@ fn info_explains_the_plan() {
     ] {
         assert!(said.contains(words), "{words} is not in:\n{said}");
     }
+    let branches = |said: &str, start: &str| {
+        let line = said.lines().find(|line| line.starts_with(start)).unwrap();
+        line.split_once(": ").unwrap().1.to_owned()
+    };
+    let kept = branches(&said, "in the loop");
+    let left_out = branches(&said, "left out of the loop");
+    assert!(
+        kept.contains("dispersion") && left_out.contains("lens"),
+        "{said}"
+    );
+    // Nothing is left out of the full plan.
+    let full = studio.run("info", &["--panel", "b/c", "--plan", "full"]);
+    let full = String::from_utf8(full.stdout).unwrap();
+    assert_eq!(
+        branches(&full, "left out of the loop"),
+        "nothing, as asked for"
+    );
+    let all = branches(&full, "in the loop");
+    let branch = |name: &str| all.split(", ").any(|other| other == name);
+    assert!(
+        kept.split(", ").chain(left_out.split(", ")).all(branch),
+        "{full}"
+    );
 }
 
 /// Ctrl-C, as a terminal sends it.

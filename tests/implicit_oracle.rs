@@ -291,7 +291,13 @@ fn streams_agree_with_single_packets() {
                     let alone = certified.first_hits(packet, wish, workspace);
                     for lane in (0..WIDTH).filter(|lane| packet.active >> lane & 1 == 1) {
                         let same = known(&alone, lane) == known(&stream, lane);
-                        assert!(same, "{name}, {}", workspace.instructions.name());
+                        assert!(
+                            same,
+                            "{name}, {} lane {lane} {:?} {:?}",
+                            workspace.instructions.name(),
+                            known(&alone, lane),
+                            known(&stream, lane)
+                        );
                     }
                 }
             }

@@ -245,7 +245,7 @@ fn gentle(rng: &mut impl Rng) -> Affine {
 fn lanes_never_contradict_the_ladder_on_nasty_rays() {
     for precision in PRECISIONS {
         let cases = nasty_cases(precision, 0x0050_facd, 12_000);
-        for kind in KINDS {
+        for &kind in KINDS {
             let mine: Vec<Case> = cases
                 .iter()
                 .filter(|case| case.placed.kind() == kind)

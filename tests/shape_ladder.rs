@@ -19,14 +19,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 /// Every shape.
-pub const KINDS: [ShapeKind; 6] = [
-    ShapeKind::Sphere,
-    ShapeKind::Cube,
-    ShapeKind::Cylinder,
-    ShapeKind::Disk,
-    ShapeKind::Rectangle,
-    ShapeKind::Plane,
-];
+pub const KINDS: &[ShapeKind] = ShapeKind::ALL;
 
 fn signed(rng: &mut impl Rng) -> f64 {
     rng.random_range(-1.0..1.0)
@@ -354,7 +347,7 @@ fn odd_input_is_refused_quietly() {
         f64::NAN,
         f64::INFINITY,
     ];
-    for kind in KINDS {
+    for &kind in KINDS {
         let scales = [1e-300, 1e-6, 1.0, 1e300];
         for scale in scales {
             let body = placed(kind, scale, DVec3::ONE);

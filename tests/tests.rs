@@ -1,5 +1,7 @@
 //! The test suite, one binary. It compiles no lane code: tests that ask lanes knock at `etalon-doors`.
 
+#![allow(clippy::too_many_lines, reason = "tables of cases are long")]
+
 mod cli;
 mod cli_render;
 mod compare;
@@ -31,6 +33,8 @@ mod oracle_primitives;
 mod oracle_support;
 #[cfg(feature = "planted")]
 mod phong_pictures;
+mod plan_bounds;
+mod plan_full;
 mod references;
 mod render_goal;
 mod rooms;

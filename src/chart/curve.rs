@@ -28,7 +28,6 @@ pub struct Curve {
 /// A mean over replicates and the half-width of its 95 % interval (NaN with one).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mean {
-    /// The mean.
     pub value: f64,
     /// Half the width.
     pub half: f64,

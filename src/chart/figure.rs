@@ -23,9 +23,7 @@ pub struct Series {
 /// A point with its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mark {
-    /// Abscissa.
     pub x: f64,
-    /// Ordinate.
     pub y: f64,
     /// Half the width of the interval about y.
     pub half: f64,
@@ -37,7 +35,6 @@ pub const MARKERS: usize = 4;
 /// A line that theory gives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Guide {
-    /// Its name.
     pub label: String,
     /// A point of it.
     pub through: (f64, f64),
@@ -45,16 +42,13 @@ pub struct Guide {
     pub slope: f64,
 }
 
-/// A chart.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Figure {
-    /// Its title.
     pub title: String,
     /// What the abscissa is.
     pub x: String,
     /// What the ordinate is.
     pub y: String,
-    /// The curves.
     pub series: Vec<Series>,
     /// Lines that theory gives.
     pub guides: Vec<Guide>,

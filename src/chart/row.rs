@@ -69,7 +69,6 @@ pub struct Row {
     pub relmse: f64,
     /// Signed mean error over the mean of the reference.
     pub bias: f64,
-    /// Its standard error.
     pub bias_standard_error: f64,
     /// The render's own estimate of `rmse`; NaN where it has none.
     pub estimated_rmse: f64,
@@ -95,7 +94,6 @@ pub enum TableError {
     Number {
         /// Its line, counted from 1.
         line: u64,
-        /// The column.
         column: &'static str,
         /// What stands there.
         text: String,

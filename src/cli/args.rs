@@ -221,6 +221,9 @@ pub struct Info {
     /// The panel (named variant) to look at.
     #[arg(long, value_name = "NAME")]
     pub panel: Option<String>,
+    /// Leave out of the loop what the scene does not need, or keep everything.
+    #[arg(long, value_enum, default_value_t)]
+    pub plan: PlanChoice,
 }
 
 impl Info {

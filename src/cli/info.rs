@@ -12,7 +12,7 @@ use super::error::CommandError;
 /// Describes the scene.
 pub fn run(arguments: &Info) -> Result<Answer, CommandError> {
     let scene = Scene::load_with(&arguments.scene.scene, &arguments.overrides())?;
-    let plan = Plan::new(&scene, false)?;
+    let plan = Plan::new(&scene, arguments.plan.is_full())?;
     let lines = explain::explain(&scene, &plan);
     let mut output = std::io::stdout().lock();
     writeln!(output, "{}", lines.join("\n"))

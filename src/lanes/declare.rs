@@ -22,9 +22,7 @@ pub enum Role {
 /// Allowed numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
-    /// From where.
     pub low: Bound<f64>,
-    /// To where.
     pub high: Bound<f64>,
 }
 
@@ -81,9 +79,7 @@ pub enum Quantity {
         /// Which numbers are allowed.
         range: Range,
     },
-    /// A spectrum.
     Spectrum(Role),
-    /// Two spectra.
     TwoSpectra(Role),
     /// n + ik of a metal: measured and named, or two spectra.
     Metal,
@@ -105,11 +101,9 @@ impl Quantity {
 /// A key and its value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameter {
-    /// The key.
     pub key: &'static str,
     /// What it is, in words.
     pub what: &'static str,
-    /// The value.
     pub quantity: Quantity,
     /// The number, or the same at all wavelengths, that is meant where the key is left out; without
     /// one, it must be there.

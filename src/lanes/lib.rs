@@ -6,6 +6,11 @@
 //! of scenes or files; the table of rooms stands in the documentation of the crate `etalon`, which
 //! is the one to use.
 
+#![allow(
+    missing_docs,
+    reason = "an inner crate: what users see is documented at the door of etalon, and here what a name does not say"
+)]
+
 pub mod camera;
 pub mod declare;
 #[doc(hidden)]

@@ -11,6 +11,7 @@ use crate::declare::Value;
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::list::List;
 use crate::integrate::model::{Appearance, Many, Model};
+use crate::integrate::needs::Needs;
 use crate::integrate::parts::Parts;
 use crate::light::{self, LaneLight, LightShape, SmallLights};
 use crate::material::Record;
@@ -71,6 +72,7 @@ pub fn build<T: Scalar>(
         occluders(scene, &lit, T::ROUNDOFF)
     };
     let parts = Parts::new(&builder.shapes, &builder.appearances);
+    let camera = LaneCamera::new(&scene.camera, scene.image.size);
     let list_costs: usize = builder
         .bounded
         .iter()
@@ -89,7 +91,12 @@ pub fn build<T: Scalar>(
                 &occluders,
             )
         }),
-        camera: LaneCamera::new(&scene.camera, scene.image.size),
+        needs: if choices.full {
+            Needs::everything()
+        } else {
+            Needs::new(&parts, &builder.appearances, camera.has_lens())
+        },
+        camera,
         sequence: Sequence::new(
             scene.image.sampler,
             scene.image.seed,
@@ -97,7 +104,6 @@ pub fn build<T: Scalar>(
             choices.replicates,
         ),
         max_depth: scene.image.max_depth.unwrap_or(u32::MAX),
-        needs: choices.needs,
         list: List::new(all, &builder.shapes, &parts.first),
         occluders: List::new(occluders, &builder.shapes, &parts.first),
         parts,

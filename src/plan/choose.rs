@@ -1,9 +1,8 @@
-//! From needs and wishes to decisions, in one table.
+//! From a scene and the user's wishes to decisions, in one table.
 
 use super::PlanError;
 use super::bounds::Blur;
-use super::needs::{everything, needs};
-use crate::integrate::model::Needs;
+use super::contents::is_implicit;
 pub use crate::math::instructions::Precision;
 use crate::math::lanes::Scalar;
 use crate::sample::replicates::Replicates;
@@ -38,9 +37,7 @@ pub enum Doubt {
 /// What is built for a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Choices {
-    /// What can happen.
-    pub needs: Needs,
-    /// Whether everything was switched on.
+    /// Whether the loop keeps what the scene does not need.
     pub full: bool,
     /// Arithmetic of the loop.
     pub precision: Precision,
@@ -60,7 +57,7 @@ pub fn choose(scene: &Scene, full: bool) -> Result<Choices, PlanError> {
     let blur = Blur::new(scene, f32::ROUNDOFF);
     let (precision, precision_reason) = match scene.image.precision {
         PrecisionChoice::F32 => {
-            let doubt = if needs(scene).implicit {
+            let doubt = if is_implicit(scene) {
                 Some(Doubt::Implicit(blur))
             } else {
                 (!blur.is_small()).then_some(Doubt::Blur(blur))
@@ -68,7 +65,7 @@ pub fn choose(scene: &Scene, full: bool) -> Result<Choices, PlanError> {
             (Precision::Single, PrecisionReason::Asked { doubt })
         }
         PrecisionChoice::F64 => (Precision::Double, PrecisionReason::Asked { doubt: None }),
-        PrecisionChoice::Auto if needs(scene).implicit => {
+        PrecisionChoice::Auto if is_implicit(scene) => {
             (Precision::Double, PrecisionReason::Implicit)
         }
         PrecisionChoice::Auto => (
@@ -93,7 +90,6 @@ pub fn choose(scene: &Scene, full: bool) -> Result<Choices, PlanError> {
         None => Replicates::Growing,
     };
     Ok(Choices {
-        needs: if full { everything() } else { needs(scene) },
         full,
         precision,
         precision_reason,

@@ -6,9 +6,9 @@ use super::bounds::{Blur, GAP_SHARE, PIXEL_SHARE};
 use super::choose::{Doubt, Precision, PrecisionReason};
 use super::{Plan, Tables};
 use crate::film::pixels::Pixels;
-use crate::integrate::model::{Model, Needs};
+use crate::integrate::model::Model;
+use crate::integrate::needs::Needs;
 use crate::light::LightShape;
-use crate::material::MaterialKind;
 use crate::math::lanes::Scalar;
 use crate::sample::replicates::Replicates;
 use crate::scene::{Object, Scene, Shape};
@@ -19,13 +19,9 @@ const LISTED: usize = 6;
 
 /// What the scene holds, what it needs and what is done about it, line by line.
 pub fn explain(scene: &Scene, plan: &Plan) -> Vec<String> {
-    let mut lines = vec![
-        picture(scene),
-        objects(scene),
-        camera(scene, plan.choices.needs),
-    ];
+    let mut lines = vec![picture(scene), objects(scene), camera(scene, plan.needs())];
     lines.extend(lights(scene, plan));
-    lines.push(kept(plan.choices.needs));
+    lines.push(kept(plan.needs()));
     lines.extend(omitted(plan));
     lines.push(wavelengths(scene, plan));
     lines.push(precision(plan));
@@ -191,22 +187,9 @@ fn listed(names: &[String]) -> String {
     text
 }
 
-/// The branches of the loop, in words, and whether they are needed.
-fn branches(needs: Needs) -> impl Iterator<Item = (&'static str, bool)> {
-    let materials = MaterialKind::ALL.iter().filter_map(move |kind| {
-        let needed = needs.materials.contains(*kind);
-        Some((kind.branch()?, needed))
-    });
-    materials.chain([
-        ("dispersion", needs.dispersion),
-        ("emitting surfaces", needs.emission),
-        ("lens", needs.lens),
-        ("implicit surfaces", needs.implicit),
-    ])
-}
-
+/// The branches of the loop that are in it, or are not.
 fn named(needs: Needs, wanted: bool) -> Vec<&'static str> {
-    let kept = branches(needs).filter(|(_, needed)| *needed == wanted);
+    let kept = needs.branches().filter(|(_, needed)| *needed == wanted);
     kept.map(|(name, _)| name).collect()
 }
 
@@ -221,7 +204,7 @@ fn omitted(plan: &Plan) -> Option<String> {
     if plan.choices.full {
         return Some("left out of the loop: nothing, as asked for".to_owned());
     }
-    let names = named(plan.choices.needs, false);
+    let names = named(plan.needs(), false);
     let text = || {
         format!(
             "left out of the loop, as nothing here needs it: {}",

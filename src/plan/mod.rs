@@ -1,17 +1,19 @@
 //! The plan: what this scene needs, decided once, built once, and explained in words.
 //!
-//! [`needs`] reads what can happen off the scene; [`choose`] turns that and the user's wishes into
-//! decisions, in one table; [`build`] makes the flat tables of the loop; [`explain`] says why.
+//! [`choose`] turns what [`contents`] and [`bounds`] say of the scene, and the user's wishes, into
+//! decisions, in one table; [`build`] makes the flat tables of the loop, and with them the list of what
+//! can happen there; [`explain`] says why.
 
 pub mod bounds;
 pub mod build;
 pub mod choose;
+pub mod contents;
 pub mod explain;
-pub mod needs;
 pub mod occluders;
 
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::model::Model;
+use crate::integrate::needs::Needs;
 use crate::scene::Scene;
 use crate::spectrum::grid::WavelengthGrid;
 use choose::Choices;
@@ -64,7 +66,7 @@ impl Plan {
     /// [`PlanError`] where the scene cannot be carried out.
     pub fn new(scene: &Scene, full: bool) -> Result<Self, PlanError> {
         let choices = choose::choose(scene, full)?;
-        let grid = WavelengthGrid::new(needs::spectra(scene));
+        let grid = WavelengthGrid::new(contents::spectra(scene));
         let tables = match choices.precision {
             choose::Precision::Single => {
                 Tables::Single(Box::new(build::build(scene, &choices, &grid)?))
@@ -77,8 +79,16 @@ impl Plan {
             choices,
             tables,
             grid,
-            left_out: needs::left_out(scene),
+            left_out: contents::left_out(scene),
         })
+    }
+
+    /// What can happen in the loop.
+    pub fn needs(&self) -> Needs {
+        match &self.tables {
+            Tables::Single(scene) => scene.0.needs,
+            Tables::Double(scene) => scene.0.needs,
+        }
     }
 
     /// Takes other random numbers: the plan is then that of the scene with this seed.

@@ -11,7 +11,7 @@ use super::transform;
 use super::tree::{Node, Value};
 use super::{Named, Object, Shape};
 use crate::math::affine::Affine;
-use crate::shape::ShapeKind;
+use crate::shape::{Length, ShapeKind};
 
 /// Names of all shapes.
 pub(super) const SHAPES: &[&str] = &{
@@ -143,8 +143,9 @@ fn shape(report: &Report, node: &Node, finder: &DefaultFinder) -> Option<Sized> 
         }
         Value::Table(_) => {
             let fields = Fields::open(report, "object.shape", node, SHAPES)?;
-            let (kind, inner) = fields.exactly_one(SHAPES)?;
-            sized(report, kind, inner)
+            let (name, inner) = fields.exactly_one(SHAPES)?;
+            let kind = ShapeKind::ALL.iter().find(|kind| kind.name() == name)?;
+            sized(report, *kind, inner)
         }
         _ => report.wrong_type(
             "object.shape",
@@ -162,67 +163,55 @@ fn plain(shape: Shape, size: DVec3) -> Sized {
     }
 }
 
-/// Shapes with sizes; each is canonical coordinates times half its extent.
-fn sized(report: &Report, kind: &str, node: &Node) -> Option<Sized> {
-    let open = |keys: &[&str]| Fields::open(report, format!("object.shape.{kind}"), node, keys);
-    let length = |fields: &Fields<'_>, key: &str, default: f64| {
-        fields.optional(key, default, |what, node| report.positive(what, node))
-    };
-    match kind {
-        "sphere" => {
-            let fields = open(&["radius", "center"])?;
-            let radius = length(&fields, "radius", 1.0);
-            let center = fields.optional("center", DVec3::ZERO, |what, node| {
-                report.vector(what, node)
-            });
-            Some(Sized {
-                shape: Shape::Canonical(ShapeKind::Sphere),
-                size: DVec3::splat(radius?),
-                center: center?,
-            })
-        }
-        "cube" => {
-            let fields = open(&["side", "size"])?;
-            let extent = match fields.at_most_one(&["side", "size"])? {
-                Some(("size", node)) => {
-                    DVec3::from_array(lengths(report, &fields.path("size"), node)?)
-                }
-                _ => DVec3::splat(length(&fields, "side", 2.0)?),
-            };
-            Some(plain(Shape::Canonical(ShapeKind::Cube), extent / 2.0))
-        }
-        "cylinder" => {
-            let fields = open(&["radius", "height"])?;
-            let radius = length(&fields, "radius", 1.0);
-            let height = length(&fields, "height", 2.0);
-            let (radius, half) = (radius?, height? / 2.0);
-            Some(plain(
-                Shape::Canonical(ShapeKind::Cylinder),
-                DVec3::new(radius, radius, half),
-            ))
-        }
-        "disk" => {
-            let fields = open(&["radius"])?;
-            let radius = length(&fields, "radius", 1.0)?;
-            Some(plain(
-                Shape::Canonical(ShapeKind::Disk),
-                DVec3::new(radius, radius, 1.0),
-            ))
-        }
-        "rectangle" => {
-            let fields = open(&["size"])?;
-            let [width, height] =
-                fields.optional("size", [2.0, 2.0], |what, node| lengths(report, what, node))?;
-            Some(plain(
-                Shape::Canonical(ShapeKind::Rectangle),
-                DVec3::new(width / 2.0, height / 2.0, 1.0),
-            ))
-        }
-        _ => {
-            open(&[])?;
-            Some(plain(Shape::Canonical(ShapeKind::Plane), DVec3::ONE))
+/// A canonical shape with the sizes that it declares.
+fn sized(report: &Report, kind: ShapeKind, node: &Node) -> Option<Sized> {
+    let lengths = kind.lengths();
+    let center = kind.is_centered().then_some("center");
+    let keys: Vec<&str> = lengths.iter().map(|own| own.key).chain(center).collect();
+    let what = format!("object.shape.{}", kind.name());
+    let fields = Fields::open(report, what, node, &keys)?;
+    for (i, one) in lengths.iter().enumerate() {
+        for other in &lengths[i + 1..] {
+            if one.axes.iter().any(|axis| other.axes.contains(axis)) {
+                fields.at_most_one(&[one.key, other.key])?;
+            }
         }
     }
+    let mut size = DVec3::ONE;
+    for own in lengths {
+        let usual = own.default.map(|default| own.share * default);
+        for &axis in own.axes {
+            size[axis] = usual.unwrap_or(size[axis]);
+        }
+    }
+    // All are read before any is missed, so that nothing that is wrong goes unsaid.
+    let read: Vec<Option<()>> = lengths
+        .iter()
+        .filter_map(|own| Some((own, fields.get(own.key)?)))
+        .map(|(own, node)| stretch(report, &fields.path(own.key), node, own, &mut size))
+        .collect();
+    let center = fields.optional("center", DVec3::ZERO, |what, node| {
+        report.vector(what, node)
+    });
+    read.into_iter().collect::<Option<()>>()?;
+    Some(Sized {
+        shape: Shape::Canonical(kind),
+        size,
+        center: center?,
+    })
+}
+
+/// Reads a length and stretches the axes that it is about.
+fn stretch(report: &Report, what: &str, node: &Node, own: &Length, size: &mut DVec3) -> Option<()> {
+    let numbers = match (own.each, own.axes.len()) {
+        (false, count) => vec![report.positive(what, node)?; count],
+        (true, 2) => lengths::<2>(report, what, node)?.to_vec(),
+        (true, _) => lengths::<3>(report, what, node)?.to_vec(),
+    };
+    for (&axis, number) in own.axes.iter().zip(numbers) {
+        size[axis] = own.share * number;
+    }
+    Some(())
 }
 
 /// `N` numbers above zero.

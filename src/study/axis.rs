@@ -5,7 +5,6 @@ use crate::chart::Key;
 /// A choice and the values it takes, in order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Axis {
-    /// The choice.
     pub key: Key,
     /// Its values, at least one, none twice.
     pub values: Vec<String>,
@@ -27,13 +26,11 @@ pub enum AxisError {
         "\"{0}\" is no range: expected FROM..TOxFACTOR with whole numbers 1 ≤ FROM ≤ TO and a factor above 1, such as 1..64x2"
     )]
     Range(String),
-    /// No values.
     #[error("the axis {0} has no values")]
     Empty(&'static str),
     /// A number was expected.
     #[error("\"{text}\" is no whole number, as the axis {key} has")]
     Number {
-        /// The axis.
         key: &'static str,
         /// What was given.
         text: String,

@@ -67,7 +67,6 @@ pub struct Count {
 }
 
 impl Count {
-    /// The share.
     pub fn share(self) -> f64 {
         self.held as f64 / self.all as f64
     }

@@ -15,7 +15,6 @@ pub struct Grid {
 /// A point of the grid.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Point {
-    /// Which curve it is on.
     pub curve: usize,
     /// What is chosen there.
     pub choices: Vec<(Key, String)>,

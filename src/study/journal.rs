@@ -27,7 +27,6 @@ pub enum JournalError {
     /// The operating system refuses.
     #[error("cannot write {}: {source}", path.display())]
     File {
-        /// The table.
         path: PathBuf,
         /// What the system says.
         source: std::io::Error,
@@ -35,7 +34,6 @@ pub enum JournalError {
     /// What is there is no table of a study.
     #[error("{}: {reason}", path.display())]
     Content {
-        /// The table.
         path: PathBuf,
         /// What is wrong with it.
         reason: TableError,

@@ -13,7 +13,6 @@ use super::grid::Grid;
 pub struct Record {
     /// Names and values of what was asked for.
     pub request: Vec<(String, String)>,
-    /// The grid.
     pub grid: Grid,
     /// The command that asked for it.
     pub command: String,
@@ -24,19 +23,13 @@ pub struct Record {
 pub enum RecordError {
     /// The file cannot be read or written.
     #[error("cannot use {}: {reason}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        reason: String,
-    },
+    File { path: PathBuf, reason: String },
     /// It is of another study.
     #[error(
         "{} is of another study: {key} is {found} there and {wanted} here; choose another directory with -o, \
          or remove that one", path.display()
     )]
     Other {
-        /// The file.
         path: PathBuf,
         /// What differs.
         key: String,

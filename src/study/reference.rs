@@ -44,9 +44,7 @@ pub enum ReferenceError {
         path.display(), found[0], found[1], wanted[0], wanted[1]
     )]
     Size {
-        /// The file.
         path: PathBuf,
-        /// Its size.
         found: [usize; 2],
         /// The scene's.
         wanted: [usize; 2],
@@ -57,11 +55,9 @@ pub enum ReferenceError {
          first is at {},{}: make the reference again", path.display(), first[0], first[1]
     )]
     NotANumber {
-        /// The file.
         path: PathBuf,
         /// The first channel that has them.
         channel: String,
-        /// How many.
         count: usize,
         /// Column and row of the first.
         first: [usize; 2],
@@ -77,19 +73,16 @@ pub enum ReferenceError {
          has changed, the reference must be made again", path.display()
     )]
     Hash {
-        /// The file.
         path: PathBuf,
         /// The hash in it.
         found: String,
         /// The scene file.
         scene: String,
-        /// Its hash.
         wanted: String,
     },
     /// It shows the scene with something else laid over it.
     #[error("{}: it shows {found}, but {wanted} is to be studied", path.display())]
     Variant {
-        /// The file.
         path: PathBuf,
         /// What it shows.
         found: String,
@@ -112,7 +105,6 @@ const OF_THE_ESTIMATOR: [&str; 7] = [
 /// What is studied: the scene and what was laid over it.
 #[derive(Debug, Clone, Copy)]
 pub struct Subject<'a> {
-    /// The scene.
     pub scene: &'a Scene,
     /// `--set` and the options that stand for it.
     pub set: &'a [(String, String)],

@@ -46,16 +46,13 @@ pub trait Watch {
     fn note(&mut self, line: &str);
     /// What is being rendered, the share of all work that is done, and the seconds left.
     fn at(&mut self, what: &str, share: f64, left: f64);
-    /// Whether to stop.
     fn stops(&self) -> bool;
 }
 
 /// A study as far as it has come.
 #[derive(Debug)]
 pub struct Study {
-    /// The grid.
     pub grid: Grid,
-    /// Its rows.
     pub rows: Vec<Row>,
     /// What they were compared with.
     pub reference: Reference,

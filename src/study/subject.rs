@@ -43,9 +43,7 @@ pub enum SubjectError {
 /// A scene ready to be rendered with any seed.
 #[derive(Debug)]
 pub struct Ready {
-    /// The scene.
     pub scene: Scene,
-    /// Its plan.
     pub plan: Plan,
     /// What names it among the renders of the study.
     pub name: String,

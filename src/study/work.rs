@@ -35,9 +35,7 @@ type Choices = Vec<(Key, String)>;
 
 /// Everything needed to render a grid.
 pub struct Work {
-    /// The grid.
     pub grid: Grid,
-    /// Its points.
     pub points: Vec<Point>,
     ready: Vec<Ready>,
     /// Samples a pixel of each.

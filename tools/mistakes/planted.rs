@@ -8,6 +8,7 @@
 use etalon::inside::camera::LaneCamera;
 use etalon::inside::declare::Value;
 use etalon::inside::integrate::model::{Appearance, Model};
+use etalon::inside::integrate::needs::Needs;
 use etalon::inside::integrate::parts::Parts;
 use etalon::inside::light::{LightShape, SmallLights};
 use etalon::inside::material::{MaterialKind, fresnel};
@@ -139,6 +140,7 @@ fn middles() -> Vec<f64> {
 /// The loop reads appearances by part.
 fn refresh<T: Scalar>(model: &mut Model<T>) {
     model.parts = Parts::new(&model.shapes, &model.appearances);
+    model.needs = Needs::new(&model.parts, &model.appearances, model.camera.has_lens());
 }
 
 fn reflectance<T: Scalar>(model: &mut Model<T>) -> bool {
@@ -205,7 +207,6 @@ fn polarisation<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
         found = true;
     }
     if found {
-        model.needs.materials = [MaterialKind::Mirror].into_iter().collect();
         refresh(model);
     }
     found

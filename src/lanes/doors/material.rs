@@ -49,14 +49,12 @@ pub struct Setting {
     pub disperses: bool,
     /// All wavelengths but the hero have ended.
     pub ended: bool,
-    /// The hero.
     pub hero: usize,
 }
 
 /// [`Event`] of one lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
-    /// wi.
     pub direction: DVec3,
     /// Forward density, or probability of a delta event.
     pub pdf: f64,

@@ -28,7 +28,6 @@ pub struct Gradients<'a, A>(pub &'a A);
 /// A value and its derivatives; `None` is zero wherever the point is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WithGradient<V> {
-    /// The value.
     pub value: V,
     /// Derivatives along x, y and z.
     pub gradient: [Option<V>; 3],

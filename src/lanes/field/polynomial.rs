@@ -47,7 +47,6 @@ impl Polynomial {
         Self::new([([0; 3], value.numer().clone())], value.denom().clone())
     }
 
-    /// x, y or z.
     pub fn coordinate(axis: usize) -> Self {
         let mut exponents = [0; 3];
         exponents[axis] = 1;
@@ -155,7 +154,6 @@ impl Polynomial {
         [0, 1, 2].map(|axis| self.derivative(axis))
     }
 
-    /// Sum.
     pub fn plus(&self, other: &Self) -> Self {
         let scale = |a: &Self, by: &BigInt| -> Vec<_> {
             a.terms.iter().map(|(e, c)| (*e, c * by)).collect()
@@ -165,7 +163,6 @@ impl Polynomial {
         Self::new(terms, &self.denominator * &other.denominator)
     }
 
-    /// Difference.
     pub fn minus(&self, other: &Self) -> Self {
         self.plus(&other.negated())
     }
@@ -179,7 +176,6 @@ impl Polynomial {
         }
     }
 
-    /// Product.
     pub fn times(&self, other: &Self) -> Self {
         let mut products = BTreeMap::<Exponents, BigInt>::new();
         for (e, a) in &self.terms {

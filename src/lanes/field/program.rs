@@ -30,7 +30,6 @@ pub const MOST_ROWS: usize = 1024;
 pub struct Form {
     /// Place of the first of `degree` + 1 coefficients.
     pub at: usize,
-    /// Its degree.
     pub degree: usize,
 }
 
@@ -59,16 +58,13 @@ pub enum Step {
         a: Form,
         /// The other; the same one for a square.
         b: Form,
-        /// Result.
         to: Form,
     },
     /// Σ factor · form + constant.
     Combination {
         /// Operands, by rising degree.
         terms: Vec<(Factor, Form)>,
-        /// The constant.
         constant: Factor,
-        /// Result.
         to: Form,
     },
 }
@@ -173,11 +169,8 @@ fn raise<N: Whole>(form: &mut [N], degrees: usize, scale: &N) -> Option<()> {
 
 /// Integers; operations give `None` where their range ends.
 pub trait Whole: Clone + Default {
-    /// An integer.
     fn of(x: &BigInt) -> Option<Self>;
-    /// Sum.
     fn plus(&self, other: &Self) -> Option<Self>;
-    /// Product.
     fn times(&self, other: &Self) -> Option<Self>;
     /// Whether it is 0.
     fn vanishes(&self) -> bool;

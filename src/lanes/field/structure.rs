@@ -9,7 +9,6 @@ use super::tape::{Binary, Operation, Place, Tape, Unary};
 /// A field whose zeros are among those of a product.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Factor {
-    /// The field.
     pub tape: Tape,
     /// How often it is a factor.
     pub multiplicity: u32,

@@ -16,7 +16,6 @@ pub enum Unary {
     Negative,
     /// √a.
     SquareRoot,
-    /// |a|.
     Absolute,
     /// eᵃ.
     Exponential,
@@ -34,28 +33,22 @@ pub enum Unary {
     ArcCosine,
     /// Arc tangent in radians.
     ArcTangent,
-    /// Hyperbolic sine.
     HyperbolicSine,
-    /// Hyperbolic cosine.
     HyperbolicCosine,
-    /// Hyperbolic tangent.
     HyperbolicTangent,
 }
 
 /// Functions of two values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Binary {
-    /// a + b.
     Sum,
     /// a − b.
     Difference,
     /// a · b.
     Product,
-    /// a / b.
     Quotient,
     /// The smaller.
     Minimum,
-    /// The larger.
     Maximum,
     /// Angle of the point (b, a), radians in (−π, π].
     ArcTangent2,
@@ -63,7 +56,6 @@ pub enum Binary {
     Power,
 }
 
-/// One operation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Operation {
     /// x, y or z: 0, 1, 2.
@@ -80,9 +72,7 @@ pub enum Operation {
 
 /// An arithmetic in which a tape can be evaluated.
 pub trait Algebra {
-    /// Its values.
     type Value: Clone;
-    /// x, y or z.
     fn coordinate(&self, axis: usize) -> Self::Value;
     /// The constant with this index.
     fn constant(&self, index: usize, exact: &BigRational) -> Self::Value;

@@ -3,6 +3,7 @@
 use super::chunk::{CHUNK, Workspace};
 use super::intersect::{Leaving, NOTHING, Rungs, lane_vector, nearest};
 use super::model::Model;
+use super::parts::word;
 use super::pool::{
     Carried, IntField, Pool, RealField, Rows, WIDEST, any, array, bit_where, each, flags, has,
     int_array,
@@ -54,7 +55,6 @@ pub struct Step<'a, L: Lanes, const C: usize> {
 /// Where in the pool a packet stands, and where its survivors go.
 #[derive(Debug, Clone, Copy)]
 pub struct Places {
-    /// The packet.
     pub at: usize,
     /// Its survivors, not after it.
     pub to: usize,
@@ -120,7 +120,7 @@ pub fn bounce<L: Lanes, const C: usize>(
     let going = step.arrive(l, &surface, hit);
     let meeting = Meeting {
         surface: &surface,
-        wo: -ray.direction,
+        direction: ray.direction,
         normal: Vec3::select(l, surface.front, surface.normal, -surface.normal),
         going,
         kinds: model.needs.materials,
@@ -154,7 +154,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     #[inline(always)]
     fn arrive(&mut self, l: L, surface: &Surfaces<L>, hit: L::Mask) -> L::Mask {
         let model = self.model;
-        if model.needs.emission {
+        if model.needs.has(word::EMITS) {
             self.add(l, surface.emits, surface.emission, surface.emission_weight);
         }
         let scatters = hit & !surface.kind.same(l.int(MaterialKind::Black as u32));

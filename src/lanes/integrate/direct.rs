@@ -35,7 +35,6 @@ pub struct Sampled<L: Lanes> {
     pub towards: Towards<L>,
     /// Spectra of the lights.
     pub spectrum: L::Int,
-    /// Their objects.
     pub object: L::Int,
     /// Scattered rays can hit them.
     pub extended: L::Mask,
@@ -89,7 +88,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
                 let densities = M::evaluate(
                     l,
                     &at,
-                    [meeting.wo, direction],
+                    [meeting.wo(), direction],
                     Transport::Radiance,
                     #[inline(always)]
                     |i, value| values[i] = *value,

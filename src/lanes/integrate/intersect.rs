@@ -66,7 +66,6 @@ impl<L: Lanes> Leaving<L> {
 /// Rays and where they start.
 #[derive(Clone, Copy)]
 pub(super) struct Rays<'a, L: Lanes> {
-    /// The rays.
     pub ray: &'a LaneRay<L>,
     /// What they leave.
     pub leaving: &'a Leaving<L>,
@@ -93,7 +92,6 @@ impl<L: Lanes> Rays<'_, L> {
 /// The closest hits of a packet.
 #[derive(Clone, Copy)]
 pub struct Nearest<L: Lanes> {
-    /// Distance.
     pub t: L::Real,
     /// Number of the part (see [`super::parts`]); [`NOTHING`] where nothing is hit.
     pub part: L::Int,

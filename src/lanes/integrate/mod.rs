@@ -14,6 +14,7 @@ pub mod intersect;
 pub mod list;
 mod many;
 pub mod model;
+pub mod needs;
 pub mod parts;
 pub mod pool;
 pub mod replay;

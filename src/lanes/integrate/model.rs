@@ -1,10 +1,11 @@
 //! What the loop works on: the scene as flat tables of lane scalars, built by the plan.
 
 use super::list::List;
+use super::needs::Needs;
 use super::parts::Parts;
 use crate::camera::LaneCamera;
 use crate::light::{LaneLight, SmallLights};
-use crate::material::{MaterialKinds, Record};
+use crate::material::Record;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Sequence;
 use crate::shape::hierarchy::{Bounds, Hierarchy, Item};
@@ -26,21 +27,6 @@ pub struct Appearance<T> {
     pub light: Option<u32>,
     /// Index of the material in the scene.
     pub material: u32,
-}
-
-/// What can happen in the scene: the loop's branches, the same for all lanes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Needs {
-    /// The materials that some surface has.
-    pub materials: MaterialKinds,
-    /// Some glass disperses.
-    pub dispersion: bool,
-    /// Some surface emits.
-    pub emission: bool,
-    /// The camera has a lens.
-    pub lens: bool,
-    /// Some object is an implicit surface.
-    pub implicit: bool,
 }
 
 /// Many objects.
@@ -124,7 +110,6 @@ pub struct Model<T: Scalar> {
     pub implicits: Vec<(u32, LaneImplicit<T>)>,
     /// What hits look like, by part.
     pub parts: Parts<T>,
-    /// By object.
     pub appearances: Vec<Appearance<T>>,
     /// Samplable lights.
     pub lights: Vec<LaneLight<T>>,

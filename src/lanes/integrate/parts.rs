@@ -1,6 +1,7 @@
 //! What the loop knows of each part of each object, by the part's number.
 
 use super::model::Appearance;
+use super::needs::Needs;
 use crate::material::SPECTRA;
 use crate::math::lanes::Scalar;
 use crate::math::lookup::SMALL;
@@ -13,7 +14,6 @@ pub mod word {
     pub const KIND: u32 = 0xff;
     /// Two parallel faces.
     pub const FACES: u32 = 1 << 8;
-    /// A ball.
     pub const BALL: u32 = 1 << 9;
     /// A shape that computes its own surface.
     pub const OTHER: u32 = 1 << 10;
@@ -27,6 +27,20 @@ pub mod word {
     pub const EMITS_BACK: u32 = 1 << 14;
     /// Part of a convex closed shape, whose exits are seen from inside.
     pub const CLOSED: u32 = 1 << 15;
+    /// Either side emits.
+    pub const EMITS: u32 = EMITS_FRONT | EMITS_BACK;
+
+    /// The branches of the loop that bits of words open.
+    pub const BRANCHES: [(u32, &str); 8] = [
+        (DISPERSES, "dispersion"),
+        (TEXTURED, "textures"),
+        (EMITS_FRONT, "emission from fronts"),
+        (EMITS_BACK, "emission from backs"),
+        (FACES, "cubes"),
+        (BALL, "balls"),
+        (OTHER, "other curved surfaces"),
+        (CLOSED, "insides of closed shapes"),
+    ];
 }
 
 /// Marks objects that no light stands for.
@@ -54,7 +68,6 @@ pub struct Look<R, I> {
     pub light: I,
 }
 
-/// One part.
 pub type Entry<T> = Look<T, u32>;
 
 /// The entries by column, where they are few.
@@ -90,14 +103,14 @@ impl<R, I> Look<R, I> {
 }
 
 impl Look<bool, bool> {
-    /// Which columns say anything, where `words` is the union of the words.
+    /// Which columns say anything.
     #[inline(always)]
-    pub fn wanted(words: u32) -> Self {
-        let emits = words & (word::EMITS_FRONT | word::EMITS_BACK) != 0;
+    pub fn wanted(needs: Needs) -> Self {
+        let emits = needs.has(word::EMITS);
         Self {
             vector: [true; 3],
             level: true,
-            half: words & word::FACES != 0,
+            half: needs.has(word::FACES),
             object: true,
             word: true,
             spectra: [true; SPECTRA],
@@ -149,14 +162,11 @@ fn with<V: Copy>(column: &[V; SMALL], k: usize, value: V) -> [V; SMALL] {
 /// All parts of a scene.
 #[derive(Debug, Clone, Default)]
 pub struct Parts<T> {
-    /// By number.
     pub entries: Vec<Entry<T>>,
     /// Number of each object's first part.
     pub first: Vec<u32>,
     /// The entries once more, where they are few.
     pub small: Option<Box<SmallTable<T>>>,
-    /// Union of all words.
-    pub words: u32,
 }
 
 impl<T: Scalar> Parts<T> {
@@ -172,7 +182,6 @@ impl<T: Scalar> Parts<T> {
                 .entries
                 .extend(own.map(|part| Entry::new(k as u32, part, closed, appearance)));
         }
-        parts.words = parts.entries.iter().fold(0, |all, e| all | e.word);
         if parts.entries.len() <= SMALL {
             parts.small = Some(Box::new(SmallTable::of(&parts.entries)));
         }

@@ -17,9 +17,9 @@ use crate::sample::Slot;
 pub struct Meeting<'a, L: Lanes> {
     /// The surfaces.
     pub surface: &'a Surfaces<L>,
-    /// Unit directions towards where the paths come from.
-    pub wo: Vec3<L::Real>,
-    /// Unit normals on that side.
+    /// Unit directions of the rays that have come there.
+    pub direction: Vec3<L::Real>,
+    /// Unit normals on their side.
     pub normal: Vec3<L::Real>,
     /// Lanes that go on from here.
     pub going: L::Mask,
@@ -28,6 +28,12 @@ pub struct Meeting<'a, L: Lanes> {
 }
 
 impl<L: Lanes> Meeting<'_, L> {
+    /// Unit directions towards where the paths come from.
+    #[inline(always)]
+    pub fn wo(&self) -> Vec3<L::Real> {
+        -self.direction
+    }
+
     /// Lanes whose surfaces are of a material.
     #[inline(always)]
     pub fn of(&self, l: L, kind: MaterialKind) -> L::Mask {
@@ -91,7 +97,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     #[inline(always)]
     pub fn scatter(&mut self, l: L, meeting: &Meeting<'_, L>) -> Scattered<L> {
         let mut next = Scattered {
-            direction: -meeting.wo,
+            direction: meeting.direction,
             pdf: l.real(0.0),
             specular: l.mask(true),
             inward: !meeting.surface.front,
@@ -110,7 +116,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             if any(own) {
                 let event = if M::LAMBERTIAN {
                     self.reflect(l, own, meeting.surface.spectra[0], &lit);
-                    reflected(l, meeting.normal, meeting.wo, direction)
+                    reflected(l, meeting.normal, meeting.wo(), direction)
                 } else {
                     self.sample::<M>(l, meeting, (own, direction), &lit)
                 };
@@ -201,7 +207,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let event = M::sample(
             l,
             &at,
-            meeting.wo,
+            meeting.wo(),
             Transport::Radiance,
             Variates { choice, direction },
             #[inline(always)]

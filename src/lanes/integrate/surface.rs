@@ -2,6 +2,7 @@
 
 use super::intersect::{Leaving, NOTHING, Nearest};
 use super::model::Model;
+use super::needs::Needs;
 use super::parts::{Entry, Look, NO_LIGHT, SmallTable, word};
 use super::pool::has;
 use crate::material::{MaterialKind, SPECTRA};
@@ -38,7 +39,6 @@ pub struct Surfaces<L: Lanes> {
 
 /// Rays that have come to surfaces.
 pub struct Arrival<'a, L: Lanes> {
-    /// The rays.
     pub ray: &'a LaneRay<L>,
     /// What they come from.
     pub leaving: &'a Leaving<L>,
@@ -68,19 +68,19 @@ pub fn surfaces<L: Lanes>(
                 ..
             } = arrival;
             let p = ray.origin.along(ray.direction, nearest.t);
-            let parts = &model.parts;
+            let (parts, needs) = (&model.parts, model.needs);
             let gathered = match &parts.small {
-                Some(table) => looked_up(l, table, nearest.part, parts.words, hit),
+                Some(table) => looked_up(l, table, nearest.part, needs, hit),
                 None => one_by_one(l, &parts.entries, nearest.part, hit),
             };
             let nobody = l.mask(false);
             let has = inlined(
                 #[inline(always)]
                 |bit: u32| {
-                    if parts.words & bit == 0 {
-                        nobody
-                    } else {
+                    if needs.has(bit) {
                         hit & has(l, gathered.word, bit)
+                    } else {
+                        nobody
                     }
                 },
             );
@@ -174,13 +174,13 @@ fn looked_up<L: Lanes>(
     l: L,
     table: &SmallTable<L::Scalar>,
     part: L::Int,
-    words: u32,
+    needs: Needs,
     hit: L::Mask,
 ) -> Look<L::Real, L::Int> {
     // Lanes that have hit nothing read some entry, and what it says is not used.
     let part = l.select_int(hit, part, l.int(0));
     table.zip(
-        &Look::wanted(words),
+        &Look::wanted(needs),
         #[inline(always)]
         |column, wanted| {
             if *wanted {

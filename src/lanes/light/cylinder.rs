@@ -31,7 +31,6 @@ struct View<L: Lanes> {
     away: L::Real,
     /// Sizes of the side and of the caps towards +z and −z; 0 of what sends nothing this way.
     sizes: [L::Real; 3],
-    /// Their sum.
     total: L::Real,
 }
 

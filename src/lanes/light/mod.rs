@@ -68,7 +68,6 @@ pub enum LightShape<T> {
     Cylinder(CylinderLight<T>),
     /// An ellipsoid, or a cylinder that is not right circular: as the canonical shape, mapped.
     Mapped(MappedLight<T>),
-    /// A point.
     Point([T; 3]),
     /// Parallel light: the direction towards it.
     Directional([T; 3]),

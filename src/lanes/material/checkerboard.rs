@@ -31,7 +31,6 @@ impl Material for Checkerboard {
         )
     };
     const WORDS: &'static str = "checkerboard";
-    const BRANCH: Option<&'static str> = Some("checkerboards");
     const TEXTURE_OF: Option<MaterialKind> = Some(MaterialKind::Diffuse);
     const SPREAD: bool = true;
 

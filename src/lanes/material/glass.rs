@@ -95,7 +95,6 @@ struct Choice<T, const C: usize> {
 /// What it has chosen.
 struct Chosen<T> {
     refracts: bool,
-    /// With which probability.
     probability: T,
     /// With which probability the way back would be chosen, by those wavelengths that go on.
     reverse: T,

@@ -17,7 +17,6 @@ pub enum Transport {
 /// What fills the space on one side of a surface.
 #[derive(Clone, Copy)]
 pub enum Medium<L: Lanes> {
-    /// Nothing.
     Vacuum,
     /// Something of index n + ik: where the nodes of n and k stand in the bank of spectra.
     Index([L::Int; 2]),
@@ -88,7 +87,6 @@ pub struct Interface<'a, L: Lanes, const C: usize> {
     pub spectra: [L::Int; SPECTRA],
     /// The material's numbers.
     pub numbers: [L::Real; NUMBERS],
-    /// At which wavelengths.
     pub wavelengths: Wavelengths<'a, L, C>,
     /// A deliberate mistake.
     #[cfg(feature = "planted")]
@@ -145,7 +143,6 @@ impl<L: Lanes, const C: usize> Indices<'_, L, C> {
 pub struct Variates<L: Lanes> {
     /// Which of the things that a surface may do.
     pub choice: L::Real,
-    /// In which direction.
     pub direction: [L::Real; 2],
 }
 

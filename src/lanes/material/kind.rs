@@ -84,7 +84,6 @@ pub trait Material {
 
 macro_rules! materials {
     ($($(#[$attribute:meta])? $kind:ident in $module:ident,)*) => {
-        /// The materials.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         #[repr(u32)]
         pub enum MaterialKind {

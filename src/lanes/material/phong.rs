@@ -20,7 +20,6 @@ pub struct Phong;
 /// Most halvings: n is less than 2⁸.
 const HALVINGS: u32 = 8;
 
-/// Its numbers.
 struct Numbers<L: Lanes> {
     /// n + 1 = 2ᵏ, so that square roots and products are enough.
     k: L::Real,

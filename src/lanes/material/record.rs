@@ -31,7 +31,6 @@ pub struct Record<T> {
     pub texture: Option<MaterialKind>,
     /// Where its spectra stand in the bank.
     pub spectra: [u32; SPECTRA],
-    /// Its numbers.
     pub numbers: [T; NUMBERS],
     /// Refraction disperses.
     pub disperses: bool,

@@ -14,7 +14,6 @@ pub struct Affine {
 }
 
 impl Affine {
-    /// The identity.
     pub const IDENTITY: Self = Self {
         rows: [
             [1.0, 0.0, 0.0, 0.0],

@@ -18,7 +18,6 @@ pub struct Exact {
 pub const VALUE_BITS: u64 = 1024;
 
 impl Exact {
-    /// An integer.
     pub fn integer(mantissa: BigInt) -> Self {
         Self {
             mantissa,

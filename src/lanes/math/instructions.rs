@@ -32,7 +32,6 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// Both.
     pub const ALL: [Self; 2] = [Self::Single, Self::Double];
 
     /// Its name in scene files and pictures.

@@ -160,7 +160,6 @@ impl<L: DoubleLanes> Interval<L> {
         self.low.max(-self.high).max(zero)
     }
 
-    /// |x|.
     #[inline(always)]
     pub fn absolute(self) -> Self {
         Self::new(self.lanes, self.mignitude(), self.magnitude())

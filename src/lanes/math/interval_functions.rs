@@ -148,7 +148,6 @@ impl<L: DoubleLanes> Interval<L> {
         self.square_root()
     }
 
-    /// x / y.
     #[inline(always)]
     pub fn quotient_noted(self, other: Self, domain: &mut Domain<L>) -> Self {
         let zero = self.lanes.real(0.0);
@@ -283,7 +282,6 @@ impl<L: DoubleLanes> Interval<L> {
         Self::new(l, low.low, high.high).whole_where(pole)
     }
 
-    /// arctan x.
     #[inline(always)]
     pub fn arc_tangent(self) -> Self {
         let l = self.lanes;

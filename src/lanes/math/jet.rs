@@ -11,14 +11,12 @@ use super::lanes::Real;
 /// A value and its derivative.
 #[derive(Clone, Copy)]
 pub struct Jet<L: DoubleLanes> {
-    /// The value.
     pub value: Interval<L>,
     /// The derivative.
     pub slope: Interval<L>,
 }
 
 impl<L: DoubleLanes> Jet<L> {
-    /// A number.
     #[inline(always)]
     pub fn constant(value: Interval<L>) -> Self {
         let slope = Interval::splat(value.lanes, [0.0, 0.0]);
@@ -34,7 +32,6 @@ impl<L: DoubleLanes> Jet<L> {
         }
     }
 
-    /// a + b.
     #[inline(always)]
     pub fn plus(self, other: Self) -> Self {
         Self {
@@ -79,7 +76,6 @@ impl<L: DoubleLanes> Jet<L> {
         }
     }
 
-    /// a / b.
     #[inline(always)]
     pub fn quotient(self, other: Self, domain: &mut Domain<L>) -> Self {
         let value = self.value.quotient_noted(other.value, domain);
@@ -121,7 +117,6 @@ impl<L: DoubleLanes> Jet<L> {
         self.chained(self.value.whole_power(n), rate)
     }
 
-    /// |a|.
     #[inline(always)]
     pub fn absolute(self) -> Self {
         let l = self.value.lanes;

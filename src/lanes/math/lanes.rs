@@ -40,7 +40,6 @@ pub trait Scalar:
 {
     /// Unit roundoff u of round-to-nearest: 2⁻²⁴ or 2⁻⁵³.
     const ROUNDOFF: f64;
-    /// Packets of it.
     type Packet<S: Simd>: Lanes<Scalar = Self>;
     /// One of it as lanes.
     type One: Lanes<Scalar = Self>;
@@ -168,7 +167,6 @@ pub trait Int:
     fn right(self, by: u32) -> Self;
     /// The 32 bits in reverse order.
     fn reversed(self) -> Self;
-    /// Equality.
     fn same(self, other: Self) -> Self::Mask;
     /// Unsigned `self < other`.
     fn below(self, other: Self) -> Self::Mask;
@@ -178,7 +176,6 @@ pub trait Int:
 pub trait Lanes: Copy + Send + Sync + 'static {
     /// Scalars in arrays.
     type Scalar: Scalar;
-    /// Reals.
     type Real: Real<Mask = Self::Mask>;
     /// Unsigned integers.
     type Int: Int<Mask = Self::Mask>;
@@ -220,7 +217,6 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn lookup(self, table: &[Self::Scalar; SMALL], index: Self::Int) -> Self::Real;
     /// The same in a table of integers.
     fn lookup_int(self, table: &[u32; SMALL], index: Self::Int) -> Self::Int;
-    /// One lane.
     fn lane(self, x: Self::Real, i: usize) -> Self::Scalar;
     /// One lane of an integer.
     fn int_lane(self, x: Self::Int, i: usize) -> u32;

@@ -36,7 +36,6 @@ impl<R: Real> Vec3<R> {
         self.x.mul_add(b.x, self.y.mul_add(b.y, self.z * b.z))
     }
 
-    /// Squared length.
     #[inline(always)]
     pub fn length_squared(self) -> R {
         self.dot(self)

@@ -178,6 +178,25 @@ impl<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize> Segment<L, W, M> {
     }
 }
 
+/// Multiplies by `sign`, with zeros from `counted` on, and returns the largest magnitude.
+#[inline(always)]
+fn turned<L: Lanes<Scalar = f64>, W: Word<L>>(
+    l: L,
+    rest: &mut [W],
+    counted: usize,
+    sign: L::Real,
+) -> L::Real {
+    let mut largest = l.real(0.0);
+    for c in &mut rest[counted..] {
+        *c = W::constant(l, [0.0; 2]);
+    }
+    for c in rest.iter_mut() {
+        *c = c.times_real(sign);
+        largest = largest.max(c.head().abs());
+    }
+    largest
+}
+
 /// The first roots in (0, 1).
 #[inline(always)]
 pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
@@ -194,15 +213,8 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
     let mut known = problem.on_root & !start.abs().gt(problem.start_error);
     let negative = l.select(known, rest[1].head(), start).lt(zero);
     let sign = l.select(negative, -one, one);
-    let mut largest = zero;
     let counted = count - problem.roots_at_end.min(count - 1);
-    for c in &mut rest[counted..] {
-        *c = W::constant(l, [0.0; 2]);
-    }
-    for c in rest.iter_mut() {
-        *c = c.times_real(sign);
-        largest = largest.max(c.head().abs());
-    }
+    let largest = turned(l, rest, counted, sign);
     // One split's worth pays for `value`, too.
     let own = split_error(count - 1, W::UNIT) * problem.accounted;
     let per_split = largest * l.real(own);
@@ -238,7 +250,8 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
         let (before, after) = (&mut before[..count], &mut after[..count]);
         after.copy_from_slice(rest);
         split(after, before, at);
-        error = error + per_split;
+        // A lane's bound is that of its own splits, not of those that others still need.
+        error = l.select(open, error + per_split, error);
         let s = signs(l, before, error, known);
         let alone = open & s.one_change;
         if alone.any() {
@@ -339,6 +352,9 @@ fn refined<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
     let (mut low, mut high) = (zero, one);
     let mut x = crossing(l, &segment[..count]);
     let mut slope = -one;
+    // Lanes whose estimate is good enough stand still, so that a root does not depend, in its last
+    // digits, on which others are sought beside it.
+    let mut moving = active;
     for _ in 0..MOST_STEPS {
         let (mut f, mut d) = (powers[count - 1], zero);
         for c in powers[..count - 1].iter().rev() {
@@ -348,16 +364,17 @@ fn refined<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
         let ahead = f.gt(zero);
         low = l.select(ahead, x, low);
         high = l.select(ahead, high, x);
-        slope = d;
+        slope = l.select(moving, d, slope);
         let next = x - f / d;
         // At a root the next estimate is an end of the bracket.
         let inside = next.ge(low) & next.le(high);
         let next = l.select(inside, next, (low + high) * half);
         let step = (next - x).abs();
-        x = next;
+        x = l.select(moving, next, x);
         // The next step is of the order of the square of this one, and the slope right to as much
         // of itself, where the root is not much closer to a minimum than 2⁻²⁰ of the segment.
-        if !(active & step.gt(l.real(1.0 / (1u64 << 40) as f64))).any() {
+        moving = moving & step.gt(l.real(1.0 / (1u64 << 40) as f64));
+        if !moving.any() {
             break;
         }
     }

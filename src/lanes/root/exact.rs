@@ -15,7 +15,6 @@ use crate::math::number::Number;
 /// A rational point on the line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// The numerator.
     pub numerator: BigInt,
     /// The denominator, positive.
     pub denominator: BigInt,
@@ -82,7 +81,6 @@ pub struct Stretch {
     pub low: Point,
     /// Whether a root there counts.
     pub low_counts: bool,
-    /// The end.
     pub high: Point,
     /// Whether a root there counts.
     pub high_counts: bool,
@@ -268,7 +266,6 @@ impl Chain {
 
 /// A polynomial whose roots are all simple, and what was divided out.
 pub(super) struct SquareFree {
-    /// It.
     pub simple: Polynomial,
     /// Its Sturm chain.
     pub chain: Chain,

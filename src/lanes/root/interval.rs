@@ -78,7 +78,6 @@ enum Part {
     Clear(i8),
     /// Exactly one zero, where the function goes from one sign to the other.
     Crossing([End; 2]),
-    /// To be cut.
     Open([End; 2], bool),
 }
 

@@ -12,7 +12,6 @@ pub mod sharpen;
 pub mod sign_change;
 pub mod sphere_trace;
 
-/// A zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Root {
     /// An interval [low, high] of t that holds the first zero. Finders that prove nothing give

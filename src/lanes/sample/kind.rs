@@ -73,7 +73,6 @@ pub trait Sampler {
 
 macro_rules! samplers {
     ($($kind:ident in $module:ident,)*) => {
-        /// The samplers.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum SamplerKind {
             $(

@@ -4,10 +4,10 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::kind::{Canonical, Emitter, Question};
+use super::kind::{Canonical, Emitter, Length, Question};
 use super::lanes::{self, Enclosure, LaneShape, LaneSurface};
 use super::line::{Crossing, Fraction, LocalRay, Span};
-use super::slab::{Along, Coordinate, Slab, cut, lane_slab, reach, slab};
+use super::slab::{Along, Slab, coordinate, cut, lane_slab, reach, slab};
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
 use crate::math::number::{Number, dot};
 use crate::math::vec3::Vec3;
@@ -17,6 +17,7 @@ pub struct Cylinder;
 
 impl Canonical for Cylinder {
     const NAME: &'static str = "cylinder";
+    const LENGTHS: &'static [Length] = &[Length::radius(&[0, 1]), Length::edge("height", &[2])];
     const EMITTER: Emitter = Emitter::Cylinder;
     const FACES: &'static [(usize, &'static [f64])] = &[(2, &[-1.0, 1.0])];
     const ROUND: Option<usize> = Some(2);
@@ -109,12 +110,7 @@ impl Canonical for Cylinder {
             side_miss = (side_miss & !parallel) | (parallel & outside);
         }
 
-        let height = Coordinate {
-            origin: o.z,
-            direction: d.z,
-            origin_error: shape.origin_error(l, ray, 2),
-            direction_error: l.splat(shape.direction_error[2]),
-        };
+        let height = coordinate(l, shape, ray, 2, (o.z, d.z));
         let mut caps = lane_slab(l, &height);
         let nowhere = l.mask(false);
         let mut along = Along::<L> {

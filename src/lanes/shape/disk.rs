@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use glam::DVec2;
 
 use super::flat::Flat;
-use super::kind::Emitter;
+use super::kind::{Emitter, Length};
 use super::line::{Fraction, LocalRay};
 use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::number::Number;
@@ -15,6 +15,7 @@ pub struct Disk;
 
 impl Flat for Disk {
     const NAME: &'static str = "disk";
+    const LENGTHS: &'static [Length] = &[Length::radius(&[0, 1])];
     const EMITTER: Emitter = Emitter::Disk;
 
     fn half_range(along: DVec2) -> f64 {

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use glam::{DVec2, DVec3};
 
-use super::kind::{Canonical, Emitter, Question};
+use super::kind::{Canonical, Emitter, Length, Question};
 use super::lanes::part::{Part, PartKind};
 use super::lanes::{self, Enclosure, LaneShape};
 use super::line::{Crossing, Feature, Fraction, LocalRay, Span};
@@ -27,6 +27,8 @@ fn crossing<N: Number>(ray: &LocalRay<N>) -> Option<Option<Crossing>> {
 pub trait Flat {
     /// [`Canonical::NAME`].
     const NAME: &'static str;
+    /// [`Canonical::LENGTHS`].
+    const LENGTHS: &'static [Length] = &[];
     /// [`Canonical::EMITTER`].
     const EMITTER: Emitter;
 
@@ -55,6 +57,7 @@ pub trait Flat {
 
 impl<F: Flat> Canonical for F {
     const NAME: &'static str = F::NAME;
+    const LENGTHS: &'static [Length] = F::LENGTHS;
     const FLAT: bool = true;
     const EMITTER: Emitter = F::EMITTER;
     const FACES: &'static [(usize, &'static [f64])] = &[(2, &[0.0])];

@@ -153,7 +153,6 @@ pub type Item = (u32, Bounds);
 /// What a child is.
 #[derive(Debug, Clone, Copy)]
 pub enum Child<'a, T> {
-    /// Balls.
     Balls(&'a Balls<T>),
     /// An object of another shape.
     Object(u32),
@@ -221,7 +220,6 @@ pub struct Descent<T> {
 }
 
 impl<T: Scalar> Descent<T> {
-    /// Nowhere.
     #[inline(always)]
     pub fn new() -> Self {
         Self {
@@ -270,7 +268,6 @@ impl<T: Scalar> Hierarchy<T> {
         hierarchy
     }
 
-    /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.nodes.len() * size_of::<Node<T>>() + self.balls.len() * size_of::<Balls<T>>()
     }

@@ -26,12 +26,49 @@ pub enum Emitter {
     Cylinder,
 }
 
+/// A length that scene files may give a shape: scene units, greater than 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Length {
+    pub key: &'static str,
+    /// The canonical axes that it stretches.
+    pub axes: &'static [usize],
+    /// Whether it is an array with a number for each of these axes.
+    pub each: bool,
+    /// Half the extent over the length: 1 for a radius, ½ for an edge.
+    pub share: f64,
+    /// What is meant where it is left out; `None` for another way to say what an earlier one says.
+    pub default: Option<f64>,
+}
+
+impl Length {
+    /// A radius about the other axes, usually 1.
+    pub const fn radius(axes: &'static [usize]) -> Self {
+        Self {
+            key: "radius",
+            axes,
+            each: false,
+            share: 1.0,
+            default: Some(1.0),
+        }
+    }
+
+    /// An edge, usually 2.
+    pub const fn edge(key: &'static str, axes: &'static [usize]) -> Self {
+        Self {
+            key,
+            axes,
+            each: false,
+            share: 0.5,
+            default: Some(2.0),
+        }
+    }
+}
+
 /// The lines that a shape is asked about in lanes.
 #[derive(Clone, Copy)]
 pub struct Question<'a, L: Lanes> {
     /// The placed shape.
     pub shape: &'a LaneShape<L::Scalar>,
-    /// The rays.
     pub ray: &'a LaneRay<L>,
     /// Lanes whose answer counts.
     pub asked: L::Mask,
@@ -43,6 +80,10 @@ pub struct Question<'a, L: Lanes> {
 pub trait Canonical {
     /// Its name in scene files.
     const NAME: &'static str;
+    /// Its sizes in scene files.
+    const LENGTHS: &'static [Length] = &[];
+    /// Whether scene files may say where its centre is, by the key `center`.
+    const CENTERED: bool = false;
     /// Whether it is a piece of the plane z = 0, with +z as its front; else it is closed.
     const FLAT: bool = false;
     /// Whether a ray that leaves it outward never comes back, so that it need not be asked again.
@@ -144,6 +185,16 @@ impl ShapeKind {
     /// Its name in scene files.
     pub fn name(self) -> &'static str {
         of!(self, NAME)
+    }
+
+    /// [`Canonical::LENGTHS`].
+    pub fn lengths(self) -> &'static [Length] {
+        of!(self, LENGTHS)
+    }
+
+    /// [`Canonical::CENTERED`].
+    pub fn is_centered(self) -> bool {
+        of!(self, CENTERED)
     }
 
     /// [`Canonical::FLAT`].

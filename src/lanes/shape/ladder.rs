@@ -132,9 +132,7 @@ impl Frame<Exact> {
 pub struct Ladder {
     /// In f64.
     pub double: Frame<Bounded>,
-    /// In double-double.
     pub double_double: Frame<DoubleDouble>,
-    /// Exact.
     pub exact: Frame<Exact>,
 }
 

@@ -11,7 +11,6 @@ use crate::math::number::{Bounded, Number};
 /// A stretch of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Query {
-    /// The ray.
     pub ray: Ray,
     /// Crossings count after this, and at it where it is 0.
     pub t_min: f64,

@@ -33,7 +33,7 @@ mod value;
 use glam::DVec3;
 
 use implicit::Implicit;
-pub use kind::{Emitter, ShapeKind};
+pub use kind::{Emitter, Length, ShapeKind};
 
 pub use crate::math::ray::Ray;
 pub use list::{Query, nearest, occluded};

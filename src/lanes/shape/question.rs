@@ -31,7 +31,6 @@ impl Limits {
 
 /// Which crossing within the limits comes first?
 pub struct First<'a> {
-    /// The shape.
     pub kind: ShapeKind,
     /// The ray in the world, for the units of t.
     pub ray: &'a ScaledRay,

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::flat::Flat;
-use super::kind::Emitter;
+use super::kind::{Emitter, Length};
 use super::line::{Fraction, LocalRay};
 use crate::math::lanes::{Lanes, Real};
 use crate::math::number::Number;
@@ -13,6 +13,10 @@ pub struct Rectangle;
 
 impl Flat for Rectangle {
     const NAME: &'static str = "rectangle";
+    const LENGTHS: &'static [Length] = &[Length {
+        each: true,
+        ..Length::edge("size", &[0, 1])
+    }];
     const EMITTER: Emitter = Emitter::Rectangle;
 
     fn half_range(along: DVec2) -> f64 {

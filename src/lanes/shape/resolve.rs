@@ -27,7 +27,6 @@ pub struct Departure {
 pub struct Doubt<'a> {
     /// The objects to ask; `None` for all.
     pub candidates: Option<&'a [u32]>,
-    /// The ray.
     pub ray: Ray,
     /// What its start knows.
     pub departure: Departure,

@@ -58,9 +58,7 @@ pub fn cut<N: Number>(ray: &LocalRay<N>, mut span: Span, faces: &Span) -> Option
 /// Crossings of one slab |x| ≤ 1 of the local ray, with bounds.
 #[derive(Clone, Copy)]
 pub struct LaneSlab<L: Lanes> {
-    /// Entry.
     pub near: Enclosure<L>,
-    /// Exit.
     pub far: Enclosure<L>,
     /// Lanes that may run along the slab, for which the bounds mean nothing.
     pub parallel: L::Mask,
@@ -69,14 +67,29 @@ pub struct LaneSlab<L: Lanes> {
 /// One coordinate of the lines, o + t d, with bounds of the errors of both numbers.
 #[derive(Clone, Copy)]
 pub struct Coordinate<L: Lanes> {
-    /// o.
     pub origin: L::Real,
-    /// d.
     pub direction: L::Real,
     /// What o is off by at most.
     pub origin_error: L::Real,
     /// What d is off by at most.
     pub direction_error: L::Real,
+}
+
+/// A local coordinate (origin, direction) with bounds of its errors.
+#[inline(always)]
+pub fn coordinate<L: Lanes>(
+    l: L,
+    shape: &LaneShape<L::Scalar>,
+    ray: &LaneRay<L>,
+    i: usize,
+    (origin, direction): (L::Real, L::Real),
+) -> Coordinate<L> {
+    Coordinate {
+        origin,
+        direction,
+        origin_error: shape.origin_error(l, ray, i),
+        direction_error: l.splat(shape.direction_error[i]),
+    }
 }
 
 /// Intersects the slab |o + t d| ≤ 1.

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::kind::{Canonical, Emitter, Question};
+use super::kind::{Canonical, Emitter, Length, Question};
 use super::lanes::part::{Part, PartKind};
 use super::lanes::{self, Enclosure, LaneRay, LaneShape, LaneSurface};
 use super::line::{Crossing, LocalRay, Span};
@@ -18,6 +18,8 @@ pub struct Sphere;
 
 impl Canonical for Sphere {
     const NAME: &'static str = "sphere";
+    const LENGTHS: &'static [Length] = &[Length::radius(&[0, 1, 2])];
+    const CENTERED: bool = true;
     const EMITTER: Emitter = Emitter::Sphere;
     const ROUND: Option<usize> = Some(3);
 
@@ -77,9 +79,7 @@ impl Canonical for Sphere {
 /// A sphere whose placement only scales it alike along all axes and moves it.
 #[derive(Debug, Clone, Copy)]
 pub struct Ball<T> {
-    /// Its centre.
     pub centre: [T; 3],
-    /// Its radius.
     pub radius: T,
     pub(in crate::shape) radius_squared: T,
     /// 6u (|c| + r): what the centre's rounding and the ray's cost beside 6u max|o|.
@@ -137,7 +137,6 @@ pub trait Asked<L: Lanes> {
     fn centre(&self, l: L) -> Vec3<L::Real>;
     /// [`Ball::radius`].
     fn radius(&self, l: L) -> L::Real;
-    /// Its square.
     fn radius_squared(&self, l: L) -> L::Real;
     /// [`Ball::offset_error`].
     fn offset_error(&self, l: L) -> L::Real;

@@ -140,7 +140,6 @@ impl<T: Scalar> SpectrumBank<T> {
         first as u32
     }
 
-    /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.values.len() * size_of::<T>()
     }

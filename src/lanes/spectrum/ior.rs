@@ -19,14 +19,12 @@ pub enum RefractiveIndex {
     Cauchy(Vec<f64>),
     /// n² = 1 + Σ Bᵢ λ²/(λ² − Cᵢ), λ in µm (Sellmeier 1871); C in µm².
     Sellmeier {
-        /// Strengths.
         b: [f64; 3],
         /// Squared resonance wavelengths, µm².
         c: [f64; 3],
     },
     /// The same with four terms, as water needs.
     SellmeierFour {
-        /// Strengths.
         b: [f64; 4],
         /// Squared resonance wavelengths, µm².
         c: [f64; 4],
@@ -46,7 +44,6 @@ pub enum IorError {
     /// The real part is zero, negative, infinite or no number.
     #[error("the refractive index must be positive, but at {nm} nm it is {n}")]
     Index {
-        /// Where.
         nm: f64,
         /// The real part there.
         n: f64,
@@ -54,7 +51,6 @@ pub enum IorError {
     /// The extinction coefficient is negative, infinite or no number.
     #[error("the extinction coefficient must not be negative, but at {nm} nm it is {k}")]
     Extinction {
-        /// Where.
         nm: f64,
         /// The extinction coefficient there.
         k: f64,

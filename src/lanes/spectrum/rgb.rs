@@ -37,7 +37,6 @@ pub enum RgbError {
 /// A fitted spectrum and what the fit left over.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RgbFit {
-    /// The spectrum.
     pub spectrum: Spectrum,
     /// The largest absolute difference between a component of its colour and the one asked for.
     pub residual: f64,

@@ -44,7 +44,6 @@ pub enum TableError {
         number: usize,
         /// Its wavelength.
         nm: f64,
-        /// Its value.
         value: f64,
     },
     /// A line of a CSV file is wrong.

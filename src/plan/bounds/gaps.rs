@@ -49,8 +49,10 @@ pub fn smallest_pairwise(sites: &[Site]) -> Option<f64> {
     gap.is_finite().then_some(gap)
 }
 
-/// Between parallel faces and round walls, wherever these end.
+/// Between parallel faces and round walls, wherever these end; seen from the object that is listed
+/// first, so that it does not depend on the order of asking.
 fn between_faces(a: &Site, b: &Site) -> f64 {
+    let (a, b) = if a.index < b.index { (a, b) } else { (b, a) };
     match (a.kind, b.kind) {
         (Some(kind), Some(other)) => faces::gap((kind, &a.to_world), (other, &b.to_world)),
         _ => f64::INFINITY,

@@ -1,7 +1,7 @@
 //! How far off positions may be, and what that must be small against.
 //!
-//! [`positions`] bounds the error of a hit, [`pixels`] sets it against the width of the pixel that sees
-//! it, and [`gaps`] finds the smallest distance between two objects. Each is an extreme over all
+//! `positions` bounds the error of a hit, `pixels` finds how near the pixels are that see it, and
+//! [`gaps`] finds the smallest distance between two objects. Each is an extreme over all
 //! objects by itself, so that another object can only make it worse.
 
 mod faces;
@@ -29,9 +29,12 @@ pub const GAP_SHARE: f64 = 1.0 / 16.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Blur {
     /// Bound on the error of a hit in each coordinate, across the ray and across the surface, scene
-    /// units.
+    /// units, where no coordinate is above `reach`; on an infinite plane it grows on with that.
     pub position: f64,
-    /// The largest share of a pixel's width that the error takes where the pixel sees it.
+    /// Largest coordinate, about the camera, of the objects' boxes and of where camera rays begin.
+    pub reach: f64,
+    /// The largest share that the error takes of a pixel's width where the pixel sees it; in parallel
+    /// projection within `reach`.
     pub pixels: f64,
     /// Smallest gap between two objects, scene units, if there is any.
     pub gap: Option<f64>,
@@ -42,16 +45,17 @@ impl Blur {
     pub fn new(scene: &Scene, roundoff: f64) -> Self {
         let sites = sites(scene);
         let start = start(scene);
-        let farthest = sites.iter().map(Site::reach).fold(start, f64::max);
+        let reach = sites.iter().map(Site::reach).fold(start, f64::max);
         let pixel = pixel_size(&scene.camera.projection, scene.image.size[1]);
         let mut blur = Self {
             position: 0.0,
+            reach,
             pixels: 0.0,
             gap: gaps::smallest(&sites),
         };
         for site in &sites {
             let error = Error::new(site, roundoff);
-            let worst = error.at(farthest);
+            let worst = error.at(reach);
             let angle = match scene.camera.projection {
                 Projection::Perspective { .. } => error.angle(pixels::nearest(site), start),
                 Projection::Orthographic { .. } => worst,
@@ -72,6 +76,8 @@ impl Blur {
 /// Where an object is, about the camera.
 #[derive(Debug)]
 pub struct Site {
+    /// Its place in the list of objects.
+    index: usize,
     /// Its shape; `None` for implicit surfaces.
     kind: Option<ShapeKind>,
     /// Canonical coordinates → world.
@@ -86,12 +92,14 @@ pub struct Site {
 
 impl Site {
     /// `None` where the map has no inverse in f64.
-    fn new(scene: &Scene, object: &Object) -> Option<Self> {
+    fn new(scene: &Scene, index: usize) -> Option<Self> {
+        let object = &scene.objects[index].value;
         let to_world = about_camera(scene, object);
         let placed = Placed::new(ShapeKind::Plane, &to_world).ok()?;
         let inverse = placed.inverse();
         let finite = inverse.rows.iter().flatten().all(|x| x.is_finite());
         finite.then(|| Self {
+            index,
             kind: object.shape.kind(),
             to_world,
             inverse,
@@ -110,8 +118,8 @@ impl Site {
 
 /// All objects whose place has an inverse: the others are refused later, by name.
 pub fn sites(scene: &Scene) -> Vec<Site> {
-    let sites = scene.objects.iter().map(|o| Site::new(scene, &o.value));
-    sites.flatten().collect()
+    let count = scene.objects.len();
+    (0..count).filter_map(|k| Site::new(scene, k)).collect()
 }
 
 /// How far from the camera's position its rays begin.

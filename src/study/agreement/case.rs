@@ -26,7 +26,6 @@ const LEAST_PIXELS: usize = 16;
 pub struct Case {
     /// What it is called.
     pub name: String,
-    /// The scene.
     pub scene: Scene,
     /// Bands of wavelengths to be judged besides R, G, B.
     pub bands: Option<BinGrid>,
@@ -60,20 +59,10 @@ pub enum CaseError {
     Singular(#[from] Singular),
     /// Its bands cannot be had.
     #[error("{}: {reason}", path.display())]
-    Bands {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        reason: String,
-    },
+    Bands { path: PathBuf, reason: String },
     /// A sample was no number.
     #[error("{name}: {count} samples are not numbers")]
-    NotANumber {
-        /// The case.
-        name: String,
-        /// How many.
-        count: u64,
-    },
+    NotANumber { name: String, count: u64 },
 }
 
 impl Case {

@@ -32,7 +32,6 @@ pub struct Answer {
 /// All answers about a case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
-    /// The answers.
     pub answers: Vec<Answer>,
     /// Means, blocks and distribution in the first round.
     pub judgement: Option<Judgement>,

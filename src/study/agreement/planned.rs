@@ -41,7 +41,6 @@ pub struct Question {
 pub struct Planned {
     /// Camera paths per pixel of the first round.
     pub spp: u32,
-    /// The questions.
     pub questions: Vec<Question>,
 }
 

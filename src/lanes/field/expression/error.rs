@@ -44,7 +44,6 @@ impl From<Problem> for ExpressionError {
 /// The kinds of mistakes.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Problem {
-    /// No text.
     #[error("the expression is empty")]
     Empty,
     /// The text ends too soon.
@@ -97,7 +96,6 @@ pub enum Problem {
     /// A constant that is not zero: no surface.
     #[error("the expression does not depend on x, y or z: its surface is empty")]
     Constant,
-    /// Zero everywhere.
     #[error("the expression is zero everywhere")]
     EverywhereZero,
     /// Too many bytes.
@@ -106,13 +104,11 @@ pub enum Problem {
     /// Too deeply nested.
     #[error("the expression is nested more than {DEEPEST} deep")]
     TooDeep,
-    /// Too many operations.
     #[error("the expression has more than {MOST_OPERATIONS} different operations")]
     TooManyOperations,
     /// A constant with too many digits.
     #[error("a constant here has more than {MOST_BITS} bits")]
     TooManyDigits,
-    /// An exponent that is too large.
     #[error("the exponent is beyond ±{MOST_EXPONENT}")]
     ExponentTooLarge,
 }

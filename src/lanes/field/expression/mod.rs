@@ -71,7 +71,6 @@ pub const RESERVED: &[&str] = &["x", "y", "z", "pi"];
 pub struct Parameter {
     /// A letter or `_`, then letters, digits or `_`.
     pub name: String,
-    /// Its value.
     pub value: BigRational,
 }
 

@@ -8,7 +8,6 @@ use num_rational::BigRational;
 use super::MOST_BITS;
 use super::error::{ExpressionError, Problem};
 
-/// A word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Word {
     Number,

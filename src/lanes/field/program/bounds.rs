@@ -121,7 +121,6 @@ pub fn bounds(program: &Program, reach: [f64; 3], rounding: Rounding) -> FieldBo
     }
 }
 
-/// C(n, i).
 pub fn binomial(n: usize, i: usize) -> f64 {
     (0..i).fold(1.0, |c, j| c * (n - j) as f64 / (j + 1) as f64)
 }

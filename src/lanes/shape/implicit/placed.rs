@@ -82,7 +82,6 @@ impl Finder {
         }
     }
 
-    /// Its name.
     pub fn name(&self) -> &'static str {
         match self {
             Self::SignChange => "sign-change",
@@ -114,7 +113,6 @@ pub struct ImplicitTally {
 }
 
 impl ImplicitTally {
-    /// One more.
     pub fn count(&mut self, tier: Option<Tier>) {
         match tier {
             Some(Tier::Double) => self.double += 1,
@@ -135,7 +133,6 @@ impl ImplicitTally {
         }
     }
 
-    /// All rays.
     pub fn rays(&self) -> u64 {
         self.double + self.double_double + self.exact + self.undecided + self.uncertified
     }
@@ -148,7 +145,6 @@ pub struct PlacedImplicit {
     finder: Finder,
 }
 
-/// A hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImplicitHit {
     /// Where on the ray, in units of its direction; finite.
@@ -189,7 +185,6 @@ impl PlacedImplicit {
         })
     }
 
-    /// The finder.
     pub fn finder(&self) -> &Finder {
         &self.finder
     }

@@ -62,7 +62,6 @@ pub struct StartSign<L: Lanes> {
 /// Rays that an implicit surface is asked about.
 #[derive(Clone, Copy)]
 pub struct FieldQuestion<'a, L: Lanes> {
-    /// The rays.
     pub ray: &'a LaneRay<L>,
     /// What they know of the surface at their start.
     pub start: StartSign<L>,

@@ -24,7 +24,6 @@ pub mod part;
 pub struct LaneRay<L: Lanes> {
     /// Origins, scene units about the camera.
     pub origin: Vec3<L::Real>,
-    /// Directions.
     pub direction: Vec3<L::Real>,
     /// Largest magnitude of an origin's coordinates.
     pub extent: L::Real,
@@ -48,9 +47,7 @@ impl<L: Lanes> LaneRay<L> {
 /// An interval that holds a number.
 #[derive(Clone, Copy)]
 pub struct Enclosure<L: Lanes> {
-    /// Lower end.
     pub low: L::Real,
-    /// Upper end.
     pub high: L::Real,
 }
 
@@ -196,7 +193,6 @@ impl<T: Scalar> LaneShape<T> {
 pub struct LaneSurface<L: Lanes> {
     /// The point, scene units about the camera.
     pub point: Vec3<L::Real>,
-    /// The normal.
     pub normal: Vec3<L::Real>,
 }
 

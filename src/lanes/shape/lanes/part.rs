@@ -54,7 +54,6 @@ pub struct Outline<L: Lanes> {
     pub half: L::Real,
     /// Where the part is a pair of faces.
     pub faces: L::Mask,
-    /// Where it is a ball.
     pub balls: L::Mask,
 }
 

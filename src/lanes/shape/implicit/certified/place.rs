@@ -30,7 +30,6 @@ pub struct Limits {
     pub upper: [f64; 3],
 }
 
-/// One factor of the field.
 #[derive(Debug, Clone)]
 pub(super) struct FactorField {
     pub program: Program,
@@ -38,7 +37,6 @@ pub(super) struct FactorField {
     pub power: u32,
     /// 1 / C(n, i), each as a sum of two f64.
     pub reciprocals: Vec<[f64; 2]>,
-    /// By tier.
     pub bounds: [FieldBounds; 2],
     /// Bound of the value at a root as f64 finds it.
     pub root_error: f64,
@@ -65,7 +63,6 @@ pub(super) struct Inverse {
 #[derive(Debug, Clone)]
 pub struct Certified {
     pub(super) factors: Vec<FactorField>,
-    /// By tier.
     pub(super) inverse: [Inverse; 2],
     pub(super) ladder: Ladder,
     /// Where hits count, object coordinates.

@@ -1,7 +1,5 @@
-//! What can happen in a scene.
+//! What a scene holds, as far as the plan asks.
 
-use crate::integrate::model::Needs;
-use crate::material::MaterialKind;
 use crate::scene::{Light, Material, Scene, Shape};
 use crate::spectrum::Spectrum;
 
@@ -13,22 +11,10 @@ fn worn(scene: &Scene) -> impl Iterator<Item = &Material> {
         .map(|object| &scene.materials[object.value.material].value)
 }
 
-/// Reads the needs off the objects that exist; what is only defined needs nothing.
-pub fn needs(scene: &Scene) -> Needs {
-    let kinds = worn(scene).map(|material| material.surface.kind);
-    Needs {
-        materials: kinds
-            .flat_map(|kind| [Some(kind), kind.texture_of()])
-            .flatten()
-            .collect(),
-        dispersion: worn(scene).any(|m| m.surface.disperses()),
-        emission: worn(scene).any(|m| m.emission.is_some()),
-        lens: scene.camera.lens.is_some(),
-        implicit: scene
-            .objects
-            .iter()
-            .any(|o| matches!(o.value.shape, Shape::Implicit(_))),
-    }
+/// Whether some object is an implicit surface.
+pub fn is_implicit(scene: &Scene) -> bool {
+    let mut shapes = scene.objects.iter().map(|object| &object.value.shape);
+    shapes.any(|shape| matches!(shape, Shape::Implicit(_)))
 }
 
 /// The spectra that light takes on its way, other than refractive indices.
@@ -43,17 +29,6 @@ pub fn spectra(scene: &Scene) -> impl Iterator<Item = &Spectrum> {
         .chain(emissions.map(|emission| &emission.radiance))
         .chain(lights)
         .chain(&scene.environment)
-}
-
-/// Everything switched on, whether it can happen or not.
-pub fn everything() -> Needs {
-    Needs {
-        materials: MaterialKind::ALL.iter().copied().collect(),
-        dispersion: true,
-        emission: true,
-        lens: true,
-        implicit: true,
-    }
 }
 
 /// Light that paths from the camera can never find: point or directional light that reaches a

@@ -1,0 +1,359 @@
+//! What single precision may blur: the plan's bounds over invented scenes of all scales.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "the tests' own scenes are right, and what they hold is known"
+)]
+
+use std::fmt::Write as _;
+
+use etalon::inside::integrate::chunk::Request;
+use etalon::inside::math::instructions::{Instructions, Precision};
+use etalon::inside::math::lanes::Scalar;
+use etalon::inside::plan::bounds::gaps::{smallest, smallest_pairwise};
+use etalon::inside::plan::bounds::{Blur, sites};
+use etalon::inside::render::replay;
+use etalon::{First, Plan, Ray, Scene, Tracer};
+use glam::DVec3;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+/// Pixels of a picture's side.
+const SIZE: u32 = 64;
+
+/// An invented scene as text: a camera and objects.
+#[derive(Clone)]
+struct Invented {
+    camera: String,
+    objects: Vec<String>,
+}
+
+/// 10^x for a uniform x.
+fn any_size(rng: &mut Pcg64Mcg, low: f64, high: f64) -> f64 {
+    10f64.powf(rng.random_range(low..high))
+}
+
+fn direction(rng: &mut Pcg64Mcg) -> DVec3 {
+    loop {
+        let v = DVec3::from_array(std::array::from_fn(|_| rng.random_range(-1.0..1.0)));
+        if (0.1..1.0).contains(&v.length()) {
+            return v.normalize();
+        }
+    }
+}
+
+/// A shape stretched to `sizes` half along its axes, turned, and put at `centre`.
+fn object(rng: &mut Pcg64Mcg, sizes: [f64; 3], centre: DVec3) -> String {
+    let shapes = [
+        "sphere = {}",
+        "cube = { side = 2 }",
+        "cylinder = { height = 2 }",
+        "disk = {}",
+        "rectangle = { size = [2, 2] }",
+        "plane = {}",
+    ];
+    let shape = shapes[rng.random_range(0..shapes.len())];
+    let [a, b, c] = sizes;
+    let turns: [f64; 2] = if rng.random::<bool>() {
+        std::array::from_fn(|_| rng.random_range(0.0..360.0))
+    } else {
+        [0.0, [0.0, 90.0][rng.random_range(0..2)]]
+    };
+    format!(
+        "[[object]]\nshape = {{ {shape} }}\nmaterial = \"m\"\ntransform = [{{ scale = [{a:e}, {b:e}, \
+         {c:e}] }}, {{ rotate_x = {} }}, {{ rotate_y = {} }}, {{ translate = {:?} }}]\n",
+        turns[0],
+        turns[1],
+        centre.to_array()
+    )
+}
+
+impl Invented {
+    /// Some objects about a place at a distance that the camera looks at, all of one scale that is
+    /// anything from 1e-9 to 1e9.
+    fn new(rng: &mut Pcg64Mcg) -> Self {
+        let scale = any_size(rng, -9.0, 9.0);
+        let from = direction(rng) * scale * any_size(rng, -1.0, 1.5);
+        let to = direction(rng) * scale * any_size(rng, -2.0, 0.0);
+        let projection = if rng.random_range(0..4) == 0 {
+            format!("orthographic = {:e}", scale * any_size(rng, -1.0, 1.0))
+        } else {
+            format!("fov = {}", rng.random_range(5.0..120.0))
+        };
+        let camera = format!(
+            "camera = {{ from = {:?}, to = {:?}, up = {:?}, {projection} }}\n",
+            from.to_array(),
+            to.to_array(),
+            direction(rng).to_array()
+        );
+        let count = rng.random_range(1..8);
+        let objects = (0..count).map(|_| Self::some_object(rng, scale)).collect();
+        Self { camera, objects }
+    }
+
+    fn some_object(rng: &mut Pcg64Mcg, scale: f64) -> String {
+        let size = scale * any_size(rng, -2.0, 0.5);
+        let sizes = if rng.random::<bool>() {
+            [size; 3]
+        } else {
+            std::array::from_fn(|_| size * any_size(rng, -1.5, 1.0))
+        };
+        let centre = direction(rng) * scale * any_size(rng, -1.0, 0.5);
+        object(rng, sizes, centre)
+    }
+
+    fn scene(&self, precision: &str) -> Scene {
+        let mut text = format!(
+            "{}environment = 1\nimage = {{ size = [{SIZE}, {SIZE}], spp = 1, max_depth = 1, sampler = \
+             \"center\", precision = \"{precision}\" }}\nmaterials.m = {{ diffuse = 0.5 }}\n",
+            self.camera
+        );
+        for object in &self.objects {
+            text.write_str(object).unwrap();
+        }
+        Scene::parse(&text).unwrap()
+    }
+}
+
+fn single(scene: &Scene) -> Blur {
+    Blur::new(scene, f32::ROUNDOFF)
+}
+
+/// Whether each of `b`'s bounds is at least as strict as those of `a`.
+fn is_as_strict(b: Blur, a: Blur) -> bool {
+    let gap = |blur: Blur| blur.gap.unwrap_or(f64::INFINITY);
+    b.position >= a.position && b.pixels >= a.pixels && gap(b) <= gap(a)
+}
+
+/// In how many scenes another object, anywhere in the list, loosens a bound.
+fn loosened(seed: u64, measure: impl Fn(&Scene) -> Blur) -> usize {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let scenes = (0..400).filter(|_| {
+        let mut invented = Invented::new(&mut rng);
+        let before = measure(&invented.scene("auto"));
+        let scale = any_size(&mut rng, -9.0, 9.0);
+        let object = Invented::some_object(&mut rng, scale);
+        let place = rng.random_range(0..=invented.objects.len());
+        invented.objects.insert(place, object);
+        !is_as_strict(measure(&invented.scene("auto")), before)
+    });
+    scenes.count()
+}
+
+#[test]
+fn another_object_never_loosens_a_bound() {
+    assert_eq!(loosened(1, single), 0);
+    // Planted: the bounds of the first object in the list, instead of the worst.
+    let planted = |scene: &Scene| {
+        let mut scene = scene.clone();
+        scene.objects.truncate(1);
+        single(&scene)
+    };
+    assert!(loosened(1, planted) > 20);
+}
+
+#[test]
+fn thin_slabs_are_as_bad_behind_a_ball() {
+    let slab = |y: f64| {
+        format!(
+            "[[object]]\nshape = {{ cube = {{}} }}\nmaterial = \"m\"\ntransform = [{{ scale = [4000, \
+             1e-3, 4000] }}, {{ rotate_z = 30 }}, {{ translate = [0, {y}, 0] }}]\n"
+        )
+    };
+    let ball = "[[object]]\nshape = { sphere = { radius = 0.01 } }\nmaterial = \"m\"\n\
+                transform = [{ translate = [0, 0, 4999] }]\n";
+    let mut invented = Invented {
+        camera: "camera = { from = [0, 0, 5000], to = [0, 0, 0], fov = 40 }\n".into(),
+        objects: vec![slab(1.0), slab(-1.0)],
+    };
+    let alone = single(&invented.scene("auto"));
+    invented.objects.insert(0, ball.into());
+    let behind = single(&invented.scene("auto"));
+    assert!(behind.position >= alone.position && behind.pixels >= alone.pixels);
+}
+
+#[test]
+fn a_pixel_is_as_wide_as_at_the_nearest_point() {
+    let mut invented = Invented {
+        camera: "camera = { from = [0, 0.02, 0], to = [0, 0, -0.3], fov = 60 }\n".into(),
+        objects: vec![
+            "[[object]]\nshape = { sphere = { radius = 1000 } }\nmaterial = \"m\"\n\
+             transform = [{ translate = [0, -1000, 0] }]\n"
+                .into(),
+        ],
+    };
+    let precision = |invented: &Invented| {
+        let plan = Plan::new(&invented.scene("auto"), false).unwrap();
+        plan.choices.precision
+    };
+    assert_eq!(precision(&invented), Precision::Double);
+    // A plane in the ball's place is as far off as its distance is.
+    invented.objects = vec![
+        "[[object]]\nshape = { plane = {} }\nmaterial = \"m\"\ntransform = [{ rotate_x = -90 }]\n"
+            .into(),
+    ];
+    assert_eq!(precision(&invented), Precision::Single);
+}
+
+#[test]
+fn the_tree_finds_the_gap_that_pairs_have() {
+    let mut rng = Pcg64Mcg::seed_from_u64(2);
+    let mut found = 0;
+    for _ in 0..300 {
+        let mut invented = Invented::new(&mut rng);
+        let scale = any_size(&mut rng, -9.0, 9.0);
+        let more = rng.random_range(0..40);
+        invented
+            .objects
+            .extend((0..more).map(|_| Invented::some_object(&mut rng, scale)));
+        let sites = sites(&invented.scene("auto"));
+        let gap = smallest(&sites);
+        assert_eq!(gap, smallest_pairwise(&sites));
+        found += usize::from(gap.is_some());
+    }
+    assert!(found > 200, "{found}");
+}
+
+/// A grid of balls of radius 0.4 a unit apart, two of them closer.
+#[test]
+fn a_gap_is_found_among_many_objects() {
+    let ball = |[x, y, z]: [f64; 3]| {
+        format!(
+            "[[object]]\nshape = {{ sphere = {{ radius = 0.4 }} }}\nmaterial = \"m\"\n\
+             transform = [{{ translate = [{x:?}, {y:?}, {z:?}] }}]\n"
+        )
+    };
+    let place = |i: usize| [i % 10, i / 10 % 10, i / 100].map(|x| x as f64);
+    let mut invented = Invented {
+        camera: "camera = { from = [0, 0, 50], to = [0, 0, 0], fov = 40 }\n".into(),
+        objects: (0..1000).map(|i| ball(place(i))).collect(),
+    };
+    let [x, y, z] = place(437);
+    invented.objects[437] = ball([x, y + 0.1875, z]);
+    let gap = single(&invented.scene("auto")).gap.unwrap();
+    // Coordinates are rounded to 2⁻⁴⁷ at the camera's distance.
+    assert!((gap - 0.0125).abs() < 1e-13, "{gap:e}");
+}
+
+/// How single precision met what double did.
+#[derive(Debug, Default)]
+struct Tally {
+    /// Hits farther from every edge than the bound.
+    inner: usize,
+    /// Hits closer to an edge.
+    edge: usize,
+    /// Inner hits that single precision has on another object, or farther off than the bound.
+    off: usize,
+    /// Rays that single precision takes past what double meets, or the other way round.
+    other: usize,
+}
+
+/// Whether the same face of the object is met all around a ray, `shift` aside.
+fn is_inner(
+    tracer: &Tracer,
+    ray: Ray,
+    (object, normal, t): (usize, DVec3, f64),
+    shift: f64,
+) -> bool {
+    let a = ray.direction.any_orthonormal_vector();
+    let b = ray.direction.cross(a);
+    (0..8).all(|i| {
+        let turn = f64::from(i) * std::f64::consts::FRAC_PI_4;
+        let aside = (a * turn.cos() + b * turn.sin()) * shift;
+        // Rays that diverge from the camera, or run beside each other: both pass the hit so far off.
+        let [diverging, beside] = [
+            Ray {
+                origin: ray.origin,
+                direction: ray.direction + aside / t,
+            },
+            Ray {
+                origin: ray.origin + aside,
+                direction: ray.direction,
+            },
+        ];
+        [diverging, beside]
+            .iter()
+            .all(|ray| match tracer.first(*ray) {
+                First::Hit(hit) => {
+                    let same = hit.normal.is_some_and(|n| n.dot(normal) > 0.5);
+                    hit.object == object && same
+                }
+                _ => false,
+            })
+    })
+}
+
+/// How far a point is from a surface that is met near it, whose unit normal is given.
+fn beside_surface(tracer: &Tracer, point: DVec3, normal: DVec3, far: f64) -> f64 {
+    let probe = Ray {
+        origin: point + normal * far,
+        direction: -normal,
+    };
+    match tracer.first(probe) {
+        First::Hit(hit) => (hit.t - far).abs(),
+        _ => f64::INFINITY,
+    }
+}
+
+/// Compares forced single with forced double wherever the plan chooses single; the bound is multiplied
+/// by `share`, which is 1 unless a mistake is planted.
+fn met(seed: u64, share: f64) -> Tally {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let mut tally = Tally::default();
+    for _ in 0..120 {
+        let invented = Invented::new(&mut rng);
+        let scene = invented.scene("auto");
+        let blur = single(&scene);
+        if !blur.is_small() {
+            continue;
+        }
+        let plans = ["f64", "f32"].map(|p| Plan::new(&invented.scene(p), false).unwrap());
+        let tracer = Tracer::new(&scene).unwrap();
+        for _ in 0..48 {
+            let [x, y] = std::array::from_fn(|_| rng.random_range(0..SIZE));
+            let request = Request { x, y, sample: 0 };
+            let [double, single] = plans
+                .each_ref()
+                .map(|plan| replay(plan, Instructions::best(), request).vertices[0].clone());
+            let from = scene.camera.from;
+            let ray = Ray {
+                origin: double.origin + from,
+                direction: double.direction,
+            };
+            let Some(object) = double.object else {
+                tally.other += usize::from(single.object.is_some());
+                continue;
+            };
+            // An error of this size in each coordinate is up to √3 of it long.
+            let beyond = (double.point.abs().max_element() / blur.reach).max(1.0);
+            let length = 3f64.sqrt() * blur.position * beyond;
+            let hit = (object as usize, double.normal, double.distance);
+            if !is_inner(&tracer, ray, hit, length) {
+                tally.edge += 1;
+                tally.other += usize::from(single.object != double.object);
+                continue;
+            }
+            tally.inner += 1;
+            let off = single.point - double.point;
+            let across = off - double.direction * off.dot(double.direction);
+            let surface = beside_surface(&tracer, single.point + from, single.normal, 8.0 * length);
+            let error = across.length().max(surface);
+            let ratio = error / length;
+            if single.object != double.object || ratio > share {
+                tally.off += 1;
+            }
+        }
+    }
+    tally
+}
+
+#[test]
+fn single_meets_what_double_does_within_the_bound() {
+    let tally = met(3, 1.0);
+    assert!(tally.inner > 1000, "{tally:?}");
+    assert_eq!(tally.off, 0, "{tally:?}");
+    // A hundredth of a pixel about an edge: at most one ray in a hundred comes so close.
+    assert!(tally.edge + tally.other < tally.inner / 100, "{tally:?}");
+    // Planted: a quarter of the bound.
+    assert!(met(3, 0.25).off > 0);
+}

@@ -1,0 +1,106 @@
+//! Are the bits of every picture, and what the plan chooses, as they were? Renders every panel of
+//! every scene small, in each precision with each instruction set of the machine, hashes the
+//! pixels, and compares with the tables beside this file.
+//!
+//!     cargo bench --bench digest
+//!     cargo bench --bench digest -- --binary another/etalon --only fig7
+
+mod binary;
+mod pictures;
+mod plan;
+mod scenes;
+mod table;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use binary::Binary;
+use clap::Parser;
+use pictures::Hashes;
+use rayon::prelude::*;
+use table::Table;
+
+/// Exit codes: 0 the same as in the tables, 1 not, 2 a picture could not be made.
+#[derive(Debug, Parser)]
+struct Arguments {
+    /// The etalon that renders.
+    #[arg(long, default_value = env!("CARGO_BIN_EXE_etalon"))]
+    binary: PathBuf,
+    /// Only scenes whose path contains this.
+    #[arg(long, conflicts_with = "write")]
+    only: Option<String>,
+    /// Write the tables instead of comparing with them.
+    #[arg(long)]
+    write: bool,
+    /// What `cargo bench` says to every benchmark.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(reason) => {
+            eprintln!("error: {reason}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Whether everything is as the tables say.
+fn run(arguments: &Arguments) -> Result<bool, String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let only = arguments.only.as_deref().unwrap_or("");
+    let variants = scenes::variants(root, only)?;
+    let binary = Binary::new(&arguments.binary, root)?;
+    let start = Instant::now();
+    let plans = variants
+        .par_iter()
+        .map(|variant| plan::row(&binary, variant));
+    let plans: Vec<_> = plans.collect::<Result<_, _>>()?;
+    let jobs: Vec<_> = variants.iter().flat_map(pictures::jobs).collect();
+    let hashes = jobs.par_iter().map(|job| job.hashes(&binary));
+    let hashes: Vec<_> = hashes.collect::<Result<_, _>>()?;
+    println!(
+        "{} plans and {} pictures in {:.0} s; instruction sets: {}",
+        plans.len(),
+        jobs.len(),
+        start.elapsed().as_secs_f64(),
+        binary.sets.join(", ")
+    );
+    if arguments.write
+        && let Some((job, torn)) = jobs.iter().zip(&hashes).find(|(_, h)| !h.agree())
+    {
+        return Err(format!("{job:?}: instruction sets differ: {torn}"));
+    }
+    let pixels = jobs
+        .iter()
+        .zip(&hashes)
+        .map(|(job, hashes)| job.row(hashes));
+    let tables = [
+        (
+            "pixels.csv",
+            pictures::COLUMNS.as_slice(),
+            pictures::KEYS,
+            pixels.collect(),
+        ),
+        ("plan.csv", plan::COLUMNS.as_slice(), plan::KEYS, plans),
+    ];
+    let mut same = hashes.iter().all(Hashes::agree);
+    for (name, columns, keys, rows) in tables {
+        let made = Table::new(columns, keys, rows);
+        let path = root.join("tools/digest").join(name);
+        if arguments.write {
+            made.write(&path)?;
+            continue;
+        }
+        let kept = Table::read(columns, keys, &path, only)?;
+        for difference in made.differences(&kept) {
+            println!("{name}: {difference}");
+            same = false;
+        }
+    }
+    Ok(same)
+}

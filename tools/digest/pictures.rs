@@ -1,0 +1,147 @@
+//! The pictures of a scene, as hashes of their bits.
+
+use std::fmt;
+
+use etalon::{Picture, Values};
+use sha2::{Digest, Sha256};
+
+use super::binary::Binary;
+use super::scenes::Variant;
+
+/// Columns of the table, of which the first [`KEYS`] name the picture.
+pub const COLUMNS: [&str; 5] = ["scene", "panel", "rendering", "precision", "sha256"];
+/// How many columns name the picture.
+pub const KEYS: usize = 4;
+
+/// Pixels of the longer side.
+const LONGEST: u32 = 40;
+/// Camera paths a pixel.
+const SAMPLES: &str = "8";
+/// Ways of rendering each scene and their arguments: all that is known of first hits, spectra with
+/// the smaller count of wavelengths, and everything in the loop.
+const RENDERINGS: [(&str, &[&str]); 3] = [
+    (
+        "first-hits",
+        &[
+            "--layers",
+            "depth,normal,object,material",
+            "--wavelengths",
+            "8",
+        ],
+    ),
+    (
+        "spectral",
+        &["--layers", "spectral:410-770:60", "--wavelengths", "4"],
+    ),
+    (
+        "full",
+        &[
+            "--plan",
+            "full",
+            "--layers",
+            "depth,normal,object,material",
+            "--wavelengths",
+            "8",
+        ],
+    ),
+];
+/// Arithmetic of the loop.
+const PRECISIONS: [&str; 2] = ["f32", "f64"];
+/// Hexadecimal digits that are kept of a hash: 64 bits, against accidents.
+const DIGITS: usize = 16;
+
+/// A picture to render.
+#[derive(Debug)]
+pub struct Job<'a> {
+    variant: &'a Variant,
+    rendering: &'static str,
+    options: &'static [&'static str],
+    precision: &'static str,
+}
+
+/// The pictures of a scene.
+pub fn jobs(variant: &Variant) -> impl Iterator<Item = Job<'_>> {
+    RENDERINGS
+        .into_iter()
+        .flat_map(move |(rendering, options)| {
+            PRECISIONS.map(|precision| Job {
+                variant,
+                rendering,
+                options,
+                precision,
+            })
+        })
+}
+
+impl Job<'_> {
+    /// The picture's hash with each instruction set.
+    ///
+    /// # Errors
+    /// A sentence with what etalon said.
+    pub fn hashes(&self, binary: &Binary) -> Result<Hashes, String> {
+        let [width, height] = self.variant.size;
+        let longest = width.max(height);
+        let small = |side: u32| (side * LONGEST.min(longest) / longest).max(1);
+        let size = format!("{}x{}", small(width), small(height));
+        let sets = binary.sets.iter().map(|&set| {
+            let mut arguments = self.variant.arguments();
+            let chosen = [
+                ["--size", &size],
+                ["--spp", SAMPLES],
+                ["--precision", self.precision],
+                ["--instructions", set],
+            ];
+            let options = self.options.iter().chain(chosen.iter().flatten());
+            arguments.extend(options.map(|&option| option.to_owned()));
+            Ok((set, hash(&binary.render(&arguments)?)))
+        });
+        sets.collect::<Result<_, String>>().map(Hashes)
+    }
+
+    /// Its line in the table.
+    pub fn row(&self, hashes: &Hashes) -> Vec<String> {
+        let ways = [self.rendering.to_owned(), self.precision.to_owned()];
+        let key = self.variant.key().into_iter().chain(ways);
+        key.chain([hashes.to_string()]).collect()
+    }
+}
+
+/// Instruction sets and the picture's hash with each.
+pub struct Hashes(Vec<(&'static str, String)>);
+
+impl Hashes {
+    /// Whether all are one.
+    pub fn agree(&self) -> bool {
+        self.0.iter().all(|(_, hash)| *hash == self.0[0].1)
+    }
+}
+
+impl fmt::Display for Hashes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.agree() {
+            return write!(f, "{}", self.0[0].1);
+        }
+        let each = self.0.iter().map(|(set, hash)| format!("{hash} ({set})"));
+        write!(f, "{}", each.collect::<Vec<_>>().join(", "))
+    }
+}
+
+/// Of the channels in the order of their names: the name, a line break, the type of the values, a
+/// line break, and the bits of the values from the least significant byte.
+fn hash(picture: &Picture) -> String {
+    let mut channels: Vec<_> = picture.channels.iter().collect();
+    channels.sort_by(|a, b| a.name.cmp(&b.name));
+    let mut digest = Sha256::new();
+    for channel in channels {
+        let (kind, bits): (_, Vec<u32>) = match &channel.values {
+            Values::F32(values) => ("f32", values.iter().map(|v| v.to_bits()).collect()),
+            Values::U32(values) => ("u32", values.clone()),
+        };
+        digest.update(format!("{}\n{kind}\n", channel.name));
+        bits.iter()
+            .for_each(|bits| digest.update(bits.to_le_bytes()));
+    }
+    let digits = digest.finalize();
+    let digits: String = digits.iter().map(|byte| format!("{byte:02x}")).collect();
+    digits[..DIGITS].to_owned()
+}

@@ -1,0 +1,88 @@
+//! Tables whose first columns name what the others say.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Rows in the order of their keys.
+pub struct Table {
+    columns: &'static [&'static str],
+    rows: BTreeMap<Vec<String>, Vec<String>>,
+}
+
+impl Table {
+    /// Rows of these columns, of which the first `keys` name the row.
+    pub fn new(
+        columns: &'static [&'static str],
+        keys: usize,
+        rows: impl IntoIterator<Item = Vec<String>>,
+    ) -> Self {
+        let split = |mut row: Vec<String>| {
+            let values = row.split_off(keys);
+            (row, values)
+        };
+        Self {
+            columns,
+            rows: rows.into_iter().map(split).collect(),
+        }
+    }
+
+    /// The table at `path` of the same columns, its rows whose first column contains `only`.
+    ///
+    /// # Errors
+    /// A sentence about a file that cannot be read or has other columns.
+    pub fn read(
+        columns: &'static [&'static str],
+        keys: usize,
+        path: &Path,
+        only: &str,
+    ) -> Result<Self, String> {
+        let failed = |reason: csv::Error| format!("{}: {reason}", path.display());
+        let mut file = csv::Reader::from_path(path).map_err(failed)?;
+        if file.headers().map_err(failed)? != columns {
+            return Err(format!("{}: its columns are others", path.display()));
+        }
+        let rows = file.deserialize::<Vec<String>>();
+        let rows: Vec<_> = rows.collect::<Result<_, _>>().map_err(failed)?;
+        let rows = rows.into_iter().filter(|row| row[0].contains(only));
+        Ok(Self::new(columns, keys, rows))
+    }
+
+    /// Writes the table to `path`.
+    ///
+    /// # Errors
+    /// A sentence about a file that cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), String> {
+        let write = || {
+            let mut file = csv::Writer::from_path(path)?;
+            file.write_record(self.columns)?;
+            for (key, values) in &self.rows {
+                file.write_record(key.iter().chain(values))?;
+            }
+            Ok(file.flush()?)
+        };
+        write().map_err(|reason: csv::Error| format!("{}: {reason}", path.display()))
+    }
+
+    /// In which values this differs from `kept`, a line each.
+    pub fn differences(&self, kept: &Self) -> Vec<String> {
+        let names = &self.columns;
+        let mut lines = Vec::new();
+        for (key, values) in &self.rows {
+            let keys = key.join(" ");
+            let Some(before) = kept.rows.get(key) else {
+                lines.push(format!("{keys}: new"));
+                continue;
+            };
+            let columns = names[key.len()..].iter().zip(before.iter().zip(values));
+            let changed = columns.filter(|(_, (before, now))| before != now);
+            lines.extend(
+                changed.map(|(name, (before, now))| {
+                    format!("{keys}: {name} was {before:?}, is {now:?}")
+                }),
+            );
+        }
+        let gone = kept.rows.keys().filter(|key| !self.rows.contains_key(*key));
+        lines.extend(gone.map(|key| format!("{}: gone", key.join(" "))));
+        lines
+    }
+}
