@@ -1,5 +1,7 @@
 //! The test suite, one binary.
 
+#![allow(clippy::too_many_lines, reason = "tables of cases are long")]
+
 mod cli;
 mod cli_render;
 mod compare;

@@ -178,6 +178,25 @@ impl<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize> Segment<L, W, M> {
     }
 }
 
+/// Multiplies by `sign`, with zeros from `counted` on, and returns the largest magnitude.
+#[inline(always)]
+fn turned<L: Lanes<Scalar = f64>, W: Word<L>>(
+    l: L,
+    rest: &mut [W],
+    counted: usize,
+    sign: L::Real,
+) -> L::Real {
+    let mut largest = l.real(0.0);
+    for c in &mut rest[counted..] {
+        *c = W::constant(l, [0.0; 2]);
+    }
+    for c in rest.iter_mut() {
+        *c = c.times_real(sign);
+        largest = largest.max(c.head().abs());
+    }
+    largest
+}
+
 /// The first roots in (0, 1).
 #[inline(always)]
 pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
@@ -194,15 +213,8 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
     let mut known = problem.on_root & !start.abs().gt(problem.start_error);
     let negative = l.select(known, rest[1].head(), start).lt(zero);
     let sign = l.select(negative, -one, one);
-    let mut largest = zero;
     let counted = count - problem.roots_at_end.min(count - 1);
-    for c in &mut rest[counted..] {
-        *c = W::constant(l, [0.0; 2]);
-    }
-    for c in rest.iter_mut() {
-        *c = c.times_real(sign);
-        largest = largest.max(c.head().abs());
-    }
+    let largest = turned(l, rest, counted, sign);
     // One split's worth pays for `value`, too.
     let own = split_error(count - 1, W::UNIT) * problem.accounted;
     let per_split = largest * l.real(own);

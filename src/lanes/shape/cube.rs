@@ -6,7 +6,7 @@ use super::kind::{Canonical, Emitter, Length, Question};
 use super::lanes::part::{Part, PartKind};
 use super::lanes::{self, Enclosure, LaneRay, LaneShape};
 use super::line::{LocalRay, Span};
-use super::slab::{Along, Coordinate, LaneSlab, Slab, cut, lane_slab, reach, slab};
+use super::slab::{Along, LaneSlab, Slab, coordinate, cut, lane_slab, reach, slab};
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
 use crate::math::number::Number;
 use crate::math::vec3::Vec3;
@@ -106,23 +106,6 @@ fn slabs<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> [Lan
         },
     );
     [axis(0), axis(1), axis(2)]
-}
-
-/// A local coordinate (origin, direction) with bounds of its errors.
-#[inline(always)]
-fn coordinate<L: Lanes>(
-    l: L,
-    shape: &LaneShape<L::Scalar>,
-    ray: &LaneRay<L>,
-    i: usize,
-    (origin, direction): (L::Real, L::Real),
-) -> Coordinate<L> {
-    Coordinate {
-        origin,
-        direction,
-        origin_error: shape.origin_error(l, ray, i),
-        direction_error: l.splat(shape.direction_error[i]),
-    }
 }
 
 /// The same where some line may run along a slab.

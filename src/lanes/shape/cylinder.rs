@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::kind::{Canonical, Emitter, Length, Question};
 use super::lanes::{self, Enclosure, LaneShape, LaneSurface};
 use super::line::{Crossing, Fraction, LocalRay, Span};
-use super::slab::{Along, Coordinate, Slab, cut, lane_slab, reach, slab};
+use super::slab::{Along, Slab, coordinate, cut, lane_slab, reach, slab};
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
 use crate::math::number::{Number, dot};
 use crate::math::vec3::Vec3;
@@ -110,12 +110,7 @@ impl Canonical for Cylinder {
             side_miss = (side_miss & !parallel) | (parallel & outside);
         }
 
-        let height = Coordinate {
-            origin: o.z,
-            direction: d.z,
-            origin_error: shape.origin_error(l, ray, 2),
-            direction_error: l.splat(shape.direction_error[2]),
-        };
+        let height = coordinate(l, shape, ray, 2, (o.z, d.z));
         let mut caps = lane_slab(l, &height);
         let nowhere = l.mask(false);
         let mut along = Along::<L> {

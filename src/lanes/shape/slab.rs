@@ -75,6 +75,23 @@ pub struct Coordinate<L: Lanes> {
     pub direction_error: L::Real,
 }
 
+/// A local coordinate (origin, direction) with bounds of its errors.
+#[inline(always)]
+pub fn coordinate<L: Lanes>(
+    l: L,
+    shape: &LaneShape<L::Scalar>,
+    ray: &LaneRay<L>,
+    i: usize,
+    (origin, direction): (L::Real, L::Real),
+) -> Coordinate<L> {
+    Coordinate {
+        origin,
+        direction,
+        origin_error: shape.origin_error(l, ray, i),
+        direction_error: l.splat(shape.direction_error[i]),
+    }
+}
+
 /// Intersects the slab |o + t d| ≤ 1.
 #[inline(always)]
 pub fn lane_slab<L: Lanes>(l: L, coordinate: &Coordinate<L>) -> LaneSlab<L> {
