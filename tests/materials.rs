@@ -123,9 +123,14 @@ fn subjects() -> Vec<(Subject, [[f64; C]; 2], [f64; 3])> {
         [3.0, 0.0, 0.0],
         [3.0, 1.0, 0.5],
     ];
-    // A mirror that sends everything on leaves nothing for the rest.
-    let of = |numbers: [f64; 3]| match numbers[1] {
-        1.0 => (Subject::Phong, [[0.0; C]; 2], numbers),
+    // A mirror that sends everything on leaves nothing for the rest, and what is never chosen must not
+    // be there: the weights of its light would have no variance.
+    let black = [0.0; C];
+    let [diffuse, lobe] = spectra;
+    let of = |numbers: [f64; 3]| match numbers {
+        [_, 1.0, _] => (Subject::Phong, [black; 2], numbers),
+        [_, _, 1.0] => (Subject::Phong, [black, lobe], numbers),
+        [_, _, 0.0] => (Subject::Phong, [diffuse, black], numbers),
         _ => (Subject::Phong, spectra, numbers),
     };
     listed.chain(phong.map(of)).collect()
@@ -563,9 +568,9 @@ fn too_dense(subject: Subject, setting: &Setting, wi: &[DVec3]) -> Vec<Evaluatio
 
 fn too_heavy(subject: Subject, setting: &Setting, u: &[[f64; 3]]) -> Vec<Sample> {
     let heavier = |event: Sample| Sample {
-        weight: event.weight.map(|weight| 1.01 * weight),
+        weight: event.weight.map(|weight| 1.05 * weight),
         pdf: if event.delta {
-            event.pdf * 0.95
+            event.pdf * 0.9
         } else {
             event.pdf
         },
