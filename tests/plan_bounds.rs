@@ -13,6 +13,7 @@ use etalon::inside::math::lanes::Scalar;
 use etalon::inside::plan::bounds::gaps::{smallest, smallest_pairwise};
 use etalon::inside::plan::bounds::{Blur, sites};
 use etalon::inside::render::replay;
+use etalon::inside::scene::SamplerKind;
 use etalon::{First, Plan, Ray, Scene, Tracer};
 use glam::DVec3;
 use rand::{RngExt, SeedableRng};
@@ -130,6 +131,9 @@ fn loosened(seed: u64, measure: impl Fn(&Scene) -> Blur) -> usize {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     let scenes = (0..400).filter(|_| {
         let mut invented = Invented::new(&mut rng);
+        let lights = "[[light]]\ndirection = [1, -2, 3]\nirradiance = 1\n\
+                      [[light]]\npoint = [0.1, 0.2, 0.3]\nintensity = 1\n";
+        invented.objects.push(lights.into());
         let before = measure(&invented.scene("auto"));
         let scale = any_size(&mut rng, -9.0, 9.0);
         let object = Invented::some_object(&mut rng, scale);
@@ -356,4 +360,102 @@ fn single_meets_what_double_does_within_the_bound() {
     assert!(tally.edge + tally.other < tally.inner / 100, "{tally:?}");
     // Planted: a quarter of the bound.
     assert!(met(3, 0.25).off > 0);
+}
+
+/// A floor at the camera's feet, and the edge of a ball's shadow through the middle of the picture.
+fn shadowed(rng: &mut Pcg64Mcg, sun: bool) -> Invented {
+    let height = any_size(rng, -3.0, 3.0);
+    let middle = DVec3::new(0.0, 0.0, -height);
+    let towards = (direction(rng) + DVec3::new(0.0, 2.0, 0.0)).normalize();
+    let aside = towards.any_orthonormal_vector();
+    let far = height * any_size(rng, 0.0, if sun { 7.0 } else { 5.0 });
+    // The line from the light to the middle touches the ball.
+    let (light, centre, radius) = if sun {
+        let travels = (-towards).to_array();
+        let light = format!("direction = {travels:?}\nirradiance = 1\n");
+        let radius = far / 2.0;
+        (light, middle + towards * far + aside * radius, radius)
+    } else {
+        let at = middle + towards * far;
+        let close = far * any_size(rng, -2.0, -0.3);
+        let radius = close / 2.0;
+        let light = format!("point = {:?}\nintensity = 1\n", at.to_array());
+        (light, at - towards * close + aside * radius, radius)
+    };
+    let camera = format!(
+        "camera = {{ from = [0, {height:e}, 0], to = {:?}, fov = 60 }}\n",
+        middle.to_array()
+    );
+    let floor = "[[object]]\nshape = { plane = {} }\nmaterial = \"m\"\n\
+                 transform = [{ rotate_x = -90 }]\n";
+    let ball = format!(
+        "[[object]]\nshape = {{ sphere = {{ radius = {radius:e} }} }}\nmaterial = \"m\"\n\
+         transform = [{{ translate = {:?} }}]\n",
+        centre.to_array()
+    );
+    Invented {
+        camera,
+        objects: vec![floor.into(), ball, format!("[[light]]\n{light}")],
+    }
+}
+
+/// The scene in a picture with a pixel in the middle, of which samples are taken all over.
+fn with_a_middle(invented: &Invented, precision: &str) -> Scene {
+    let mut scene = invented.scene(precision);
+    scene.image.size = [SIZE + 1; 2];
+    scene.image.sampler = SamplerKind::Sobol;
+    scene.image.spp = 64;
+    scene.image.max_depth = Some(2);
+    scene
+}
+
+/// Samples of the middle pixel that both precisions follow to the floor, and those among them that only
+/// one sees lit.
+fn lit_otherwise(invented: &Invented) -> [usize; 2] {
+    let plans = ["f64", "f32"]
+        .map(|precision| Plan::new(&with_a_middle(invented, precision), false).unwrap());
+    let blocked = |sample: u32| {
+        let [x, y] = [SIZE / 2; 2];
+        let request = Request { x, y, sample };
+        let lights = plans.each_ref().map(|plan| {
+            let replayed = replay(plan, Instructions::best(), request);
+            replayed.vertices[0].light.map(|light| light.blocked)
+        });
+        Some([lights[0]?, lights[1]?])
+    };
+    let seen: Vec<[bool; 2]> = (0..64).filter_map(blocked).collect();
+    [seen.len(), seen.iter().filter(|[a, b]| a != b).count()]
+}
+
+/// Samples in scenes for which the bound lets single be taken, how many of them may be lit otherwise, and
+/// how many are; the bound is divided by `weaker`, which is 1 unless a mistake is planted.
+///
+/// What may be lit otherwise is the part of the pixel between the edges in both precisions: as wide as
+/// the bound, at most √2 pixels long, and as much again because the hit itself may be off by as much.
+fn shaded(sun: bool, weaker: f64) -> (usize, f64, usize) {
+    let mut rng = Pcg64Mcg::seed_from_u64(4);
+    let (mut taken, mut allowed, mut otherwise) = (0, 0.0, 0);
+    for _ in 0..80 {
+        let invented = shadowed(&mut rng, sun);
+        let mut blur = single(&with_a_middle(&invented, "auto"));
+        blur.pixels /= weaker;
+        if blur.is_small() {
+            let [seen, differ] = lit_otherwise(&invented);
+            taken += seen;
+            allowed += 2.0 * std::f64::consts::SQRT_2 * blur.pixels * seen as f64;
+            otherwise += differ;
+        }
+    }
+    (taken, allowed, otherwise)
+}
+
+#[test]
+fn hard_shadows_fall_where_they_do_in_double() {
+    for sun in [true, false] {
+        let (taken, allowed, otherwise) = shaded(sun, 1.0);
+        assert!(taken > 1000, "{taken}");
+        assert!(otherwise as f64 <= allowed, "{otherwise} {allowed}");
+        let (_, allowed, otherwise) = shaded(sun, 100.0);
+        assert!(otherwise as f64 > allowed, "{otherwise} {allowed}");
+    }
 }

@@ -25,17 +25,21 @@ pub const KEYS: usize = 2;
 
 /// What etalon calls the branches of its loop, and what the table calls them. These and the other
 /// words here follow etalon's when they change; the table does not.
-const NEEDS: [(&str, &str); 10] = [
+const NEEDS: [(&str, &str); 13] = [
     ("nothing but the environment", ""),
     ("diffuse reflection", "diffuse"),
     ("metals", "conductor"),
     ("ideal mirrors", "ideal_mirror"),
     ("glass", "glass"),
     ("dispersion", "dispersion"),
-    ("emitting surfaces", "emission"),
+    ("emission from", "emission"),
     ("lens", "lens"),
-    ("implicit surfaces", "implicit"),
-    ("checkerboards", "checker"),
+    ("textures", "checker"),
+    // How hits look, which the table leaves out.
+    ("cubes", ""),
+    ("balls", ""),
+    ("other curved surfaces", ""),
+    ("insides of closed shapes", ""),
 ];
 /// How the account of a finder begins, and its name.
 const FINDERS: [(&str, &str); 4] = [
@@ -67,9 +71,12 @@ pub fn row(binary: &Binary, variant: &Variant) -> Result<Vec<String>, String> {
     let needs = line("in the loop: ")?.split(", ");
     let needs = needs.map(|words| translated(&NEEDS, words));
     // A set: etalon may say it in any order.
-    let needs: BTreeSet<_> = needs.collect::<Result<_, _>>()?;
-    let needs: Vec<_> = needs.into_iter().collect();
+    let mut needs: BTreeSet<_> = needs.collect::<Result<_, _>>()?;
     let [index, occluders, finders] = intersection(line("intersection: ")?)?;
+    if !finders.is_empty() {
+        needs.insert("implicit");
+    }
+    let needs: Vec<_> = needs.into_iter().filter(|need| !need.is_empty()).collect();
     let choices = [
         text("precision")?,
         text("wavelengths")?,

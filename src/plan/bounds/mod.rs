@@ -1,13 +1,14 @@
 //! How far off positions may be, and what that must be small against.
 //!
-//! `positions` bounds the error of a hit, `pixels` finds how near the pixels are that see it, and
-//! [`gaps`] finds the smallest distance between two objects. Each is an extreme over all
+//! `positions` bounds the error of a hit, `shadows` that of a hard shadow's edge, `pixels` finds how near
+//! the pixels are that see it, and [`gaps`] finds the smallest distance between two objects. Each is an extreme over all
 //! objects by itself, so that another object can only make it worse.
 
 mod faces;
 pub mod gaps;
 mod pixels;
 mod positions;
+mod shadows;
 
 use glam::DVec3;
 
@@ -33,8 +34,8 @@ pub struct Blur {
     pub position: f64,
     /// Largest coordinate, about the camera, of the objects' boxes and of where camera rays begin.
     pub reach: f64,
-    /// The largest share that the error takes of a pixel's width where the pixel sees it; in parallel
-    /// projection within `reach`.
+    /// The largest share that the error, or the shift of a hard shadow, takes of a pixel's width where the
+    /// pixel sees it; in parallel projection within `reach`.
     pub pixels: f64,
     /// Smallest gap between two objects, scene units, if there is any.
     pub gap: Option<f64>,
@@ -46,19 +47,21 @@ impl Blur {
         let sites = sites(scene);
         let start = start(scene);
         let reach = sites.iter().map(Site::reach).fold(start, f64::max);
+        let central = matches!(scene.camera.projection, Projection::Perspective { .. });
         let pixel = pixel_size(&scene.camera.projection, scene.image.size[1]);
         let mut blur = Self {
             position: 0.0,
             reach,
-            pixels: 0.0,
+            pixels: shadows::shift(scene, &sites, roundoff, reach) / pixel,
             gap: gaps::smallest(&sites),
         };
         for site in &sites {
             let error = Error::new(site, roundoff);
             let worst = error.at(reach);
-            let angle = match scene.camera.projection {
-                Projection::Perspective { .. } => error.angle(pixels::nearest(site), start),
-                Projection::Orthographic { .. } => worst,
+            let angle = if central {
+                error.angle(pixels::nearest(site, DVec3::ZERO), start)
+            } else {
+                worst
             };
             blur.position = blur.position.max(worst);
             blur.pixels = blur.pixels.max(angle / pixel);
@@ -112,7 +115,7 @@ impl Site {
     fn reach(&self) -> f64 {
         self.bounds
             .as_ref()
-            .map_or_else(|| pixels::nearest(self), reach)
+            .map_or_else(|| pixels::nearest(self, DVec3::ZERO), reach)
     }
 }
 

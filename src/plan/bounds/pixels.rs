@@ -4,43 +4,44 @@ use glam::DVec3;
 
 use super::Site;
 
-/// A lower bound on the camera's distance from the object's surface, scene units; 0 for implicit
-/// surfaces whose box the camera is in. Exact for planes and balls, and for boxes along the axes.
-pub fn nearest(site: &Site) -> f64 {
-    let outside = site
-        .bounds
-        .map_or(0.0, |b| b.low.max(-b.high).max(DVec3::ZERO).length());
-    outside.max(beside(site)).max(to_surface(site))
+/// A lower bound on the distance of a point, `from`, from the object's surface, scene units; 0 for
+/// implicit surfaces whose box it is in. Exact for planes and balls, and for boxes along the axes.
+pub fn nearest(site: &Site, from: DVec3) -> f64 {
+    let outside = site.bounds.map_or(0.0, |b| {
+        (b.low - from).max(from - b.high).max(DVec3::ZERO).length()
+    });
+    let local = site.inverse.point(from);
+    outside
+        .max(beside(site, local))
+        .max(to_surface(site, local))
 }
 
-/// The camera's distance from the farthest of the three slabs between opposite faces of the
+/// The distance of a canonical point from the farthest of the three slabs between opposite faces of the
 /// canonical box.
-fn beside(site: &Site) -> f64 {
+fn beside(site: &Site, from: DVec3) -> f64 {
     let Some([low, high]) = site.corners else {
         return 0.0;
     };
-    let camera = site.inverse.translation();
-    let apart = (camera - high).max(low - camera).to_array();
+    let apart = (from - high).max(low - from).to_array();
     let slabs = apart.iter().zip(rows(site));
     slabs
         .map(|(apart, row)| apart / row.length())
         .fold(0.0, f64::max)
 }
 
-/// The camera's distance from the nearest of the planes and round walls that the surface is made of,
+/// The distance of a canonical point from the nearest of the planes and round walls that the surface is made of,
 /// wherever these end.
-fn to_surface(site: &Site) -> f64 {
+fn to_surface(site: &Site, from: DVec3) -> f64 {
     let Some(kind) = site.kind else {
         return 0.0;
     };
-    let camera = site.inverse.translation();
     let rows = rows(site);
     let faces = kind.faces().iter().flat_map(|(axis, places)| {
-        let distance = move |place: &f64| (camera[*axis] - place).abs() / rows[*axis].length();
+        let distance = move |place: &f64| (from[*axis] - place).abs() / rows[*axis].length();
         places.iter().map(distance)
     });
     let wall = kind.round().map(|count| {
-        let axes = &camera.to_array()[..count];
+        let axes = &from.to_array()[..count];
         let from_axis = axes.iter().map(|x| x * x).sum::<f64>().sqrt();
         (from_axis - 1.0).abs() / largest_stretch(&rows[..count])
     });
