@@ -12,7 +12,7 @@ import numpy as np
 
 NM_MIN, NM_MAX = 360, 830
 WHOLE_NM = np.arange(NM_MIN, NM_MAX + 1.0)
-DATA = Path(__file__).resolve().parent.parent / "src" / "spectrum" / "data"
+DATA = Path(__file__).resolve().parent.parent / "src" / "lanes" / "spectrum" / "data"
 # XYZ to linear sRGB, D65 white: IEC 61966-2-1:1999/Amd 1:2003, as in src/lanes/spectrum/observer.rs.
 XYZ_TO_RGB = np.array(
     [[3.2406255, -1.537208, -0.4986286], [-0.9689307, 1.8757561, 0.0415175], [0.0557101, -0.2040211, 1.0569959]]
