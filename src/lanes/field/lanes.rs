@@ -74,21 +74,9 @@ impl<T: Scalar> LaneField<T> {
             lanes,
             constants: &self.constants,
             points: [
-                each(
-                    zero,
-                    #[inline(always)]
-                    |i| points[i].x,
-                ),
-                each(
-                    zero,
-                    #[inline(always)]
-                    |i| points[i].y,
-                ),
-                each(
-                    zero,
-                    #[inline(always)]
-                    |i| points[i].z,
-                ),
+                each(zero, inlined!(|i: usize| points[i].x)),
+                each(zero, inlined!(|i: usize| points[i].y)),
+                each(zero, inlined!(|i: usize| points[i].z)),
             ],
         }
     }
@@ -166,25 +154,12 @@ impl<L: Lanes, const W: usize> Algebra for Packets<'_, L, W> {
     fn unary(&self, function: Unary, a: &Self::Value) -> Self::Value {
         let zero = self.lanes.real(0.0);
         match function {
-            Unary::Negative => each(
-                zero,
-                #[inline(always)]
-                |i| -a[i],
-            ),
-            Unary::SquareRoot => each(
-                zero,
-                #[inline(always)]
-                |i| a[i].sqrt(),
-            ),
-            Unary::Absolute => each(
-                zero,
-                #[inline(always)]
-                |i| a[i].abs(),
-            ),
+            Unary::Negative => each(zero, inlined!(|i: usize| -a[i])),
+            Unary::SquareRoot => each(zero, inlined!(|i: usize| a[i].sqrt())),
+            Unary::Absolute => each(zero, inlined!(|i: usize| a[i].abs())),
             _ => each(
                 zero,
-                #[inline(always)]
-                |i| by_lane(self.lanes, function, a[i]),
+                inlined!(|i: usize| by_lane(self.lanes, function, a[i])),
             ),
         }
     }
@@ -197,8 +172,7 @@ impl<L: Lanes, const W: usize> Algebra for Packets<'_, L, W> {
             ($function:expr) => {
                 each(
                     zero,
-                    #[inline(always)]
-                    |i| of_two(self.lanes, $function, a[i], b[i]),
+                    inlined!(|i: usize| of_two(self.lanes, $function, a[i], b[i])),
                 )
             };
         }
@@ -214,19 +188,14 @@ impl<L: Lanes, const W: usize> Algebra for Packets<'_, L, W> {
     fn whole_power(&self, a: &Self::Value, n: i32) -> Self::Value {
         let (zero, one) = (self.lanes.real(0.0), self.lanes.real(1.0));
         if n == 2 {
-            return each(
-                zero,
-                #[inline(always)]
-                |i| a[i] * a[i],
-            );
+            return each(zero, inlined!(|i: usize| a[i] * a[i]));
         }
         each(
             zero,
-            #[inline(always)]
-            |i| {
+            inlined!(|i: usize| {
                 let power = evaluate::repeated(a[i], n.unsigned_abs(), one);
                 if n < 0 { one / power } else { power }
-            },
+            }),
         )
     }
 }
@@ -247,8 +216,7 @@ impl<L: Lanes, const W: usize> Differentiable for Packets<'_, L, W> {
         let zero = self.lanes.real(0.0);
         each(
             zero,
-            #[inline(always)]
-            |i| self.lanes.select(s[i].lt(zero), below[i], above[i]),
+            inlined!(|i: usize| self.lanes.select(s[i].lt(zero), below[i], above[i])),
         )
     }
 }

@@ -149,11 +149,7 @@ impl Instructions {
     pub fn run<T: Scalar, J: Job<T>>(self, job: J) -> J::Output {
         macro_rules! on {
             ($lanes:expr, $run:ident) => {
-                on(
-                    $lanes,
-                    #[inline(always)]
-                    |lanes| job.$run(lanes),
-                )
+                on($lanes, inlined!(|lanes| job.$run(lanes)))
             };
         }
         match self {
@@ -182,8 +178,5 @@ impl Instructions {
 /// The boundary at which code for an instruction set begins.
 #[inline(never)]
 fn on<L: Lanes, R>(lanes: L, work: impl FnOnce(L) -> R) -> R {
-    lanes.vectorize(
-        #[inline(always)]
-        || work(lanes),
-    )
+    lanes.vectorize(inlined!(|| work(lanes)))
 }

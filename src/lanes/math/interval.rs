@@ -402,10 +402,7 @@ impl<L: DoubleLanes> Domain<L> {
     /// The same, for lanes from `place` on of eight that take all combinations of sides.
     #[inline(always)]
     pub fn with_sides(l: L, place: usize) -> Self {
-        let side = crate::math::lanes::inlined(
-            #[inline(always)]
-            |bits: u32| l.mask_from_bits(bits >> place),
-        );
+        let side = inlined!(|bits: u32| l.mask_from_bits(bits >> place));
         Self {
             sides: [side(0xaa), side(0xcc), side(0xf0)],
             ..Self::unbroken(l)

@@ -250,8 +250,7 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     }
 }
 
-/// Gives a closure back. An attribute may stand on an argument but not on the right of `let`, and
-/// a closure over lanes must be inlined to be compiled for the instruction set of its caller.
+/// Gives a closure back: for the macro of the same name.
 #[inline(always)]
 pub fn inlined<F>(f: F) -> F {
     f

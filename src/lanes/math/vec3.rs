@@ -4,7 +4,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use glam::DVec3;
 
-use super::lanes::{Lanes, Real, inlined};
+use super::lanes::{Lanes, Real};
 
 /// Three reals a lane.
 #[derive(Clone, Copy)]
@@ -188,13 +188,10 @@ impl<T: super::lanes::Scalar> Rows<T> {
         v: Vec3<L::Real>,
     ) -> (L::Real, L::Real) {
         let r = &self.rows[i];
-        let along = inlined(
-            #[inline(always)]
-            |j: usize, p: L::Real, v: L::Real| {
-                let scale = l.splat(r[j]);
-                (scale.mul_add(p, l.splat(r[3])), scale * v)
-            },
-        );
+        let along = inlined!(|j: usize, p: L::Real, v: L::Real| {
+            let scale = l.splat(r[j]);
+            (scale.mul_add(p, l.splat(r[3])), scale * v)
+        });
         match self.only[i] {
             0 => along(0, p.x, v.x),
             1 => along(1, p.y, v.y),
@@ -245,16 +242,13 @@ impl<T: super::lanes::Scalar> Rows<T> {
     /// Transpose of the linear part times a vector: normals, when these rows are the inverse.
     #[inline(always)]
     pub fn transposed<L: Lanes<Scalar = T>>(&self, l: L, v: Vec3<L::Real>) -> Vec3<L::Real> {
-        let column = inlined(
-            #[inline(always)]
-            |j: usize| {
-                l.splat(self.rows[0][j]).mul_add(
-                    v.x,
-                    l.splat(self.rows[1][j])
-                        .mul_add(v.y, l.splat(self.rows[2][j]) * v.z),
-                )
-            },
-        );
+        let column = inlined!(|j: usize| {
+            l.splat(self.rows[0][j]).mul_add(
+                v.x,
+                l.splat(self.rows[1][j])
+                    .mul_add(v.y, l.splat(self.rows[2][j]) * v.z),
+            )
+        });
         Vec3::new(column(0), column(1), column(2))
     }
 }

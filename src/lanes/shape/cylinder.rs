@@ -8,7 +8,7 @@ use super::kind::{Canonical, Emitter, Length, Question};
 use super::lanes::{self, Enclosure, LaneShape, LaneSurface};
 use super::line::{Crossing, Fraction, LocalRay, Span};
 use super::slab::{Along, Slab, coordinate, cut, lane_slab, reach, slab};
-use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
+use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::number::{Number, dot};
 use crate::math::vec3::Vec3;
 
@@ -60,10 +60,7 @@ impl Canonical for Cylinder {
         } = *question;
         let u = <L::Scalar as Scalar>::ROUNDOFF;
         let one = l.real(1.0);
-        let row = inlined(
-            #[inline(always)]
-            |i: usize| shape.inverse.row(l, i, ray.origin, ray.direction),
-        );
+        let row = inlined!(|i: usize| shape.inverse.row(l, i, ray.origin, ray.direction));
         let ((ox, dx), (oy, dy), (oz, dz)) = (row(0), row(1), row(2));
         let (o, d) = (Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
         let (e0, dd) = shape.largest_errors(l, ray, 2);

@@ -12,7 +12,7 @@ use glam::DVec3;
 use super::lanes::LaneShape;
 use super::lanes::balls::{Balls, MOST};
 use crate::math::affine::Affine;
-use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
+use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 use split::split;
 
@@ -197,17 +197,11 @@ impl<L: Lanes> BoxRay<L> {
     #[inline(always)]
     pub fn new(l: L, origin: [L::Scalar; 3], inverse: [L::Scalar; 3]) -> Self {
         let zero = L::Scalar::default();
-        let splat = inlined(
-            #[inline(always)]
-            |x: L::Scalar| l.splat(x),
-        );
+        let splat = inlined!(|x: L::Scalar| l.splat(x));
         Self {
             origin: origin.map(&splat),
             inverse: inverse.map(&splat),
-            backwards: inverse.map(
-                #[inline(always)]
-                |x| x < zero,
-            ),
+            backwards: inverse.map(inlined!(|x| x < zero)),
         }
     }
 }

@@ -278,10 +278,7 @@ impl<T: Scalar> LaneShape<T> {
         asked: L::Mask,
         limit: L::Real,
     ) -> lanes::Span<L> {
-        l.vectorize(
-            #[inline(always)]
-            || self.span(l, ray, asked, limit),
-        )
+        l.vectorize(inlined!(|| self.span(l, ray, asked, limit)))
     }
 
     /// [`Canonical::parts`].

@@ -168,10 +168,7 @@ pub fn reach<L: Lanes>(
 ) -> L::Real {
     let (e, _) = shape.largest_errors(l, ray, 3);
     let sum = o.x.abs() + o.y.abs() + o.z.abs();
-    let [dx, dy, dz] = shape.direction_error.map(
-        #[inline(always)]
-        |error| l.splat(error),
-    );
+    let [dx, dy, dz] = shape.direction_error.map(inlined!(|error| l.splat(error)));
     let slowest = (d.x.abs() - dx).max(d.y.abs() - dy).max(d.z.abs() - dz);
     (sum + (e + l.real(3.0))) / slowest.max(l.real(0.0))
 }

@@ -3,8 +3,6 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{u8x16, u8x64};
 
-use super::inlined;
-
 /// Whether the instruction set's own minimum and maximum are `a < b ? a : b` and `a > b ? a : b`,
 /// as `minps` and its kin are on x86.
 #[inline(always)]
@@ -170,10 +168,7 @@ pub(super) use {lanes, mask, real};
 pub fn reversed_bytes<S: Simd>(simd: S, bytes: u8x64<S>, order: [u8; 16]) -> u8x64<S> {
     /// The four bits of the index reversed.
     const NIBBLES: [u8; 16] = [0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15];
-    let repeated = inlined(
-        #[inline(always)]
-        |block: [u8; 16]| u8x64::block_splat(u8x16::simd_from(simd, block)),
-    );
+    let repeated = inlined!(|block: [u8; 16]| u8x64::block_splat(u8x16::simd_from(simd, block)));
     let table = repeated(NIBBLES);
     let low = u8x64::splat(simd, 0x0f);
     let bytes = bytes.swizzle_dyn_within_blocks(repeated(order));

@@ -123,12 +123,11 @@ impl<L: DoubleLanes> Enclosed for Along<'_, L> {
         let lanes = self.lanes;
         stage(
             lanes,
-            #[inline(always)]
-            || {
+            inlined!(|| {
                 for place in (0..PIECES).step_by(L::COUNT) {
                     self.over_lanes(&from[place..], &to[place..], place, &mut pieces);
                 }
-            },
+            }),
         );
         pieces
     }
@@ -138,8 +137,7 @@ impl<L: DoubleLanes> Enclosed for Along<'_, L> {
         let mut clear = true;
         stage(
             lanes,
-            #[inline(always)]
-            || {
+            inlined!(|| {
                 let s = Interval::splat(lanes, [from, to]);
                 let coordinates = [
                     self.coordinate(0, &s),
@@ -152,7 +150,7 @@ impl<L: DoubleLanes> Enclosed for Along<'_, L> {
                             .sides(lanes, &coordinates, place, &mut self.sides);
                     clear &= bits(value.may_be_zero() & !void) == 0;
                 }
-            },
+            }),
         );
         clear
     }
@@ -163,12 +161,11 @@ impl<L: DoubleLanes> Enclosed for Along<'_, L> {
         let lanes = self.lanes;
         stage(
             lanes,
-            #[inline(always)]
-            || {
+            inlined!(|| {
                 for place in (0..PIECES).step_by(L::COUNT) {
                     self.at_lanes(&t[place..], place, &mut values);
                 }
-            },
+            }),
         );
         values
     }
