@@ -28,7 +28,6 @@ pub struct Gradients<'a, A>(pub &'a A);
 #[derive(Debug, Clone, PartialEq)]
 pub struct WithGradient<V> {
     pub value: V,
-    /// Derivatives along x, y and z.
     pub gradient: [Option<V>; 3],
 }
 
@@ -128,7 +127,6 @@ impl<A: Differentiable> Gradients<'_, A> {
         ))
     }
 
-    /// The gradient of the one or the other.
     #[inline(always)]
     fn chosen(
         &self,

@@ -14,7 +14,6 @@ use arithmetic::Arithmetic;
 pub use arithmetic::Side;
 use compiler::Compiler;
 
-/// One operation on registers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Step {
     Coordinate(usize),
@@ -38,7 +37,6 @@ pub struct IntervalProgram {
 }
 
 impl IntervalProgram {
-    /// The program of a tape.
     pub fn new(tape: &Tape) -> Self {
         Compiler::new(tape).run()
     }

@@ -25,7 +25,6 @@ impl<L: Lanes, const W: usize> Default for Scratch<L, W> {
 }
 
 impl<T: Scalar> LaneField<T> {
-    /// Rounds the constants of a tape.
     pub fn new(tape: &Tape) -> Self {
         let rounded = |c: &BigRational| T::from_f64(evaluate::nearest(c));
         let constants = tape.constants().iter().map(rounded).collect();
@@ -82,11 +81,9 @@ impl<T: Scalar> LaneField<T> {
     }
 }
 
-/// Lane arithmetic at some packets of points.
 struct Packets<'a, L: Lanes, const W: usize> {
     lanes: L,
     constants: &'a [L::Scalar],
-    /// x, y and z of each packet.
     points: [[L::Real; W]; 3],
 }
 
@@ -101,7 +98,6 @@ pub fn each<R: Copy, const W: usize>(start: R, f: impl Fn(usize) -> R) -> [R; W]
     array
 }
 
-/// A function of one value, lane by lane in f64.
 #[inline(never)]
 fn by_lane<L: Lanes>(l: L, function: Unary, a: L::Real) -> L::Real {
     let mut result = a;
@@ -112,7 +108,6 @@ fn by_lane<L: Lanes>(l: L, function: Unary, a: L::Real) -> L::Real {
     result
 }
 
-/// A function of two values, lane by lane in f64.
 #[inline(never)]
 fn by_lane_of_two<L: Lanes>(l: L, function: Binary, a: L::Real, b: L::Real) -> L::Real {
     let mut result = a;

@@ -33,7 +33,6 @@ pub struct Form {
     pub degree: usize,
 }
 
-/// A constant as the arithmetics want it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Factor {
     /// The nearest f64 and the nearest f64 of the rest.
@@ -42,19 +41,14 @@ pub struct Factor {
     pub exact: BigInt,
 }
 
-/// One operation on forms.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
-    /// The coordinate x, y or z.
     Coordinate {
-        /// 0, 1, 2.
         axis: usize,
         /// Result, of degree 1.
         to: Form,
     },
-    /// a · b.
     Product {
-        /// One operand.
         a: Form,
         /// The other; the same one for a square.
         b: Form,
@@ -93,12 +87,10 @@ impl Program {
         Emission::new(&algebra).program(field, raised)
     }
 
-    /// The operations.
     pub fn steps(&self) -> &[Step] {
         &self.steps
     }
 
-    /// Where the field is.
     pub fn result(&self) -> Form {
         self.result
     }
@@ -172,7 +164,6 @@ pub trait Whole: Clone + Default {
     fn of(x: &BigInt) -> Option<Self>;
     fn plus(&self, other: &Self) -> Option<Self>;
     fn times(&self, other: &Self) -> Option<Self>;
-    /// Whether it is 0.
     fn vanishes(&self) -> bool;
 }
 
@@ -206,10 +197,8 @@ impl Whole for i128 {
     }
 }
 
-/// Which of the algebra's atoms.
 type AtomIndex = usize;
 
-/// What sums are made of.
 #[derive(Debug, Clone, PartialEq)]
 enum Atom {
     Coordinate(usize),
@@ -363,7 +352,6 @@ struct Placed {
     denominator: BigInt,
 }
 
-/// Writes the operations down.
 struct Emission<'a> {
     algebra: &'a Algebra,
     steps: Vec<Step>,

@@ -140,7 +140,6 @@ fn small_sinh_kernel<L: DoubleLanes>(l: L, x: L::Real) -> L::Real {
 }
 
 impl<L: DoubleLanes> Interval<L> {
-    /// √x.
     #[inline(always)]
     pub fn square_root_noted(self, domain: &mut Domain<L>) -> Self {
         let zero = self.lanes.real(0.0);
@@ -156,7 +155,6 @@ impl<L: DoubleLanes> Interval<L> {
         self / other
     }
 
-    /// eˣ.
     #[inline(always)]
     pub fn exponential(self) -> Self {
         let l = self.lanes;
@@ -190,7 +188,6 @@ impl<L: DoubleLanes> Interval<L> {
         )
     }
 
-    /// (sin x, cos x).
     #[inline(always)]
     pub fn sine_cosine(self) -> (Self, Self) {
         let l = self.lanes;

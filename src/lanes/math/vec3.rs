@@ -6,19 +6,14 @@ use glam::DVec3;
 
 use super::lanes::{Lanes, Real};
 
-/// Three reals a lane.
 #[derive(Clone, Copy)]
 pub struct Vec3<R> {
-    /// First component.
     pub x: R,
-    /// Second component.
     pub y: R,
-    /// Third component.
     pub z: R,
 }
 
 impl<R: Real> Vec3<R> {
-    /// From components.
     #[inline(always)]
     pub fn new(x: R, y: R, z: R) -> Self {
         Self { x, y, z }
@@ -30,7 +25,6 @@ impl<R: Real> Vec3<R> {
         Self::new(l.real(v.x), l.real(v.y), l.real(v.z))
     }
 
-    /// Inner product.
     #[inline(always)]
     pub fn dot(self, b: Self) -> R {
         self.x.mul_add(b.x, self.y.mul_add(b.y, self.z * b.z))
@@ -41,7 +35,6 @@ impl<R: Real> Vec3<R> {
         self.dot(self)
     }
 
-    /// Cross product.
     #[inline(always)]
     pub fn cross(self, b: Self) -> Self {
         Self::new(
@@ -51,7 +44,6 @@ impl<R: Real> Vec3<R> {
         )
     }
 
-    /// Every component times a scalar.
     #[inline(always)]
     pub fn scale(self, s: R) -> Self {
         Self::new(self.x * s, self.y * s, self.z * s)
@@ -67,20 +59,17 @@ impl<R: Real> Vec3<R> {
         )
     }
 
-    /// Unit vector of the same direction.
     #[inline(always)]
     pub fn normalized<L: Lanes<Real = R>>(self, l: L) -> Self {
         self.scale(l.real(1.0) / self.length_squared().sqrt())
     }
 
-    /// 1 over each component.
     #[inline(always)]
     pub fn reciprocal<L: Lanes<Real = R>>(self, l: L) -> Self {
         let one = l.real(1.0);
         Self::new(one / self.x, one / self.y, one / self.z)
     }
 
-    /// Largest magnitude of a component.
     #[inline(always)]
     pub fn max_abs(self) -> R {
         self.x.abs().max(self.y.abs()).max(self.z.abs())
@@ -149,7 +138,6 @@ impl<R: Real> Neg for Vec3<R> {
 /// An affine map whose rows are scalars, applied to lanes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rows<T> {
-    /// Rows of the 3×4 matrix.
     pub rows: [[T; 4]; 3],
     /// The only coordinate that each row depends on; [`SEVERAL`] where there is more than one.
     only: [u8; 3],
@@ -170,7 +158,6 @@ fn only(row: &[f64; 4]) -> u8 {
 }
 
 impl<T: super::lanes::Scalar> Rows<T> {
-    /// Rounds a 3×4 matrix of f64.
     pub fn from_f64(rows: &[[f64; 4]; 3]) -> Self {
         Self {
             rows: rows.map(|row| row.map(T::from_f64)),
@@ -200,7 +187,6 @@ impl<T: super::lanes::Scalar> Rows<T> {
         }
     }
 
-    /// Linear part of row `i` times a vector.
     #[inline(always)]
     pub fn row_dot<L: Lanes<Scalar = T>>(&self, l: L, i: usize, v: Vec3<L::Real>) -> L::Real {
         let r = &self.rows[i];
@@ -208,7 +194,6 @@ impl<T: super::lanes::Scalar> Rows<T> {
             .mul_add(v.x, l.splat(r[1]).mul_add(v.y, l.splat(r[2]) * v.z))
     }
 
-    /// Row `i` of the image of a point.
     #[inline(always)]
     pub fn row_point<L: Lanes<Scalar = T>>(&self, l: L, i: usize, p: Vec3<L::Real>) -> L::Real {
         let r = &self.rows[i];
@@ -219,7 +204,6 @@ impl<T: super::lanes::Scalar> Rows<T> {
         )
     }
 
-    /// Image of a point.
     #[inline(always)]
     pub fn point<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> Vec3<L::Real> {
         Vec3::new(
@@ -229,7 +213,6 @@ impl<T: super::lanes::Scalar> Rows<T> {
         )
     }
 
-    /// Image of a vector.
     #[inline(always)]
     pub fn vector<L: Lanes<Scalar = T>>(&self, l: L, v: Vec3<L::Real>) -> Vec3<L::Real> {
         Vec3::new(

@@ -28,7 +28,6 @@ const MOST_STEPS: usize = 24;
 
 /// Polynomials of degree below M.
 pub struct Problem<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize> {
-    /// Bernstein coefficients.
     pub coefficients: [W; M],
     /// How many there are: one more than the degree.
     pub count: usize,
@@ -43,20 +42,16 @@ pub struct Problem<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize> {
     pub roots_at_end: usize,
     /// Part of the solver's own rounding that is accounted for: 1.
     pub accounted: f64,
-    /// Those that are asked for.
     pub active: L::Mask,
 }
 
 /// What is known of the first roots.
 #[derive(Clone, Copy)]
 pub struct Roots<L: Lanes> {
-    /// There is one.
     pub found: L::Mask,
-    /// There is none.
     pub absent: L::Mask,
     /// The polynomial is negative before the root, or everywhere.
     pub negative: L::Mask,
-    /// Estimate of the root.
     pub root: L::Real,
     /// It is not before this.
     pub low: L::Real,
@@ -66,7 +61,6 @@ pub struct Roots<L: Lanes> {
     pub doubt: L::Real,
 }
 
-/// Signs of a row of coefficients.
 struct Signs<L: Lanes> {
     /// All certainly positive.
     positive: L::Mask,

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::kind::{Canonical, Emitter, Length, Question};
 use super::lanes::part::{Part, PartKind};
-use super::lanes::{self, Enclosure, LaneRay, LaneShape};
+use super::lanes::{self, LaneRay, LaneShape};
 use super::line::{LocalRay, Span};
 use super::slab::{Along, LaneSlab, Slab, coordinate, cut, lane_slab, reach, slab};
 use crate::math::lanes::{Lanes, Mask, Real, Scalar};
@@ -137,14 +137,8 @@ fn joined<L: Lanes>(
     lost: L::Mask,
     outside: L::Mask,
 ) -> lanes::Span<L> {
-    let near = Enclosure {
-        low: x.near.low.max(y.near.low).max(z.near.low),
-        high: x.near.high.max(y.near.high).max(z.near.high),
-    };
-    let far = Enclosure {
-        low: x.far.low.min(y.far.low).min(z.far.low),
-        high: x.far.high.min(y.far.high).min(z.far.high),
-    };
+    let near = x.near.later(y.near).later(z.near);
+    let far = x.far.earlier(y.far).earlier(z.far);
     // One part a pair of faces.
     let which = inlined!(|y_later: L::Mask, z_later: L::Mask| {
         let x_or_y = l.select_int(y_later, l.int(1), l.int(0));

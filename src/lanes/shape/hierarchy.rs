@@ -27,23 +27,18 @@ const HALVED_LEVELS: usize = 11;
 /// Most entries that wait while a ray descends.
 const STACK: usize = (FREE_LEVELS + HALVED_LEVELS) * (WIDTH - 1) + 1;
 
-/// An axis-aligned box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// Lower corner.
     pub low: DVec3,
-    /// Upper corner.
     pub high: DVec3,
 }
 
 impl Bounds {
-    /// The box of nothing.
     const NOTHING: Self = Self {
         low: DVec3::INFINITY,
         high: DVec3::NEG_INFINITY,
     };
 
-    /// The box of both.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self {
@@ -52,7 +47,6 @@ impl Bounds {
         }
     }
 
-    /// The box of all.
     pub fn around<'a>(items: impl IntoIterator<Item = &'a Item>) -> Self {
         let boxes = items.into_iter().map(|(_, bounds)| *bounds);
         boxes.fold(Self::NOTHING, Self::union)
@@ -107,7 +101,6 @@ pub struct OuterBox<T> {
 }
 
 impl<T: Scalar> OuterBox<T> {
-    /// Around a box.
     pub fn new(bounds: &Bounds) -> Self {
         Self {
             ends: [0, 1, 2].map(|axis| {
@@ -150,7 +143,6 @@ impl<T: Scalar> OuterBox<T> {
 /// An object's index and its box.
 pub type Item = (u32, Bounds);
 
-/// What a child is.
 #[derive(Debug, Clone, Copy)]
 pub enum Child<'a, T> {
     Balls(&'a Balls<T>),
@@ -164,7 +156,6 @@ mod word {
     pub const BALLS: u32 = 1 << 30;
     pub const OBJECT: u32 = 2 << 30;
     pub const KIND: u32 = 3 << 30;
-    /// Where there is no child.
     pub const EMPTY: u32 = u32::MAX;
 }
 
@@ -175,12 +166,10 @@ struct Node<T> {
     child: [u32; WIDTH],
 }
 
-/// Boxes over objects.
 #[derive(Debug, Clone, Default)]
 pub struct Hierarchy<T> {
     nodes: Vec<Node<T>>,
     balls: Vec<Balls<T>>,
-    /// The box around all.
     pub all: OuterBox<T>,
 }
 

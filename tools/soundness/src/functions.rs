@@ -4,6 +4,7 @@ use astro_float::{BigFloat, Consts, RoundingMode};
 use etalon::Instructions;
 use etalon::inside::math::instructions::{DoubleLanes, Job};
 use etalon::inside::math::interval::{Domain, Interval};
+use etalon::inside::math::lanes::Mask;
 
 use super::arithmetic::{Bounds, Report};
 use super::random::Source;
@@ -98,7 +99,7 @@ impl Job<f64> for Apply<'_> {
             let c = enclosed(self.function, a, b, &mut domain);
             l.store(c.low, &mut out.low[i..]);
             l.store(c.high, &mut out.high[i..]);
-            let bits = etalon::inside::math::interval::bits(domain.broken);
+            let bits = domain.broken.bits();
             for j in 0..L::COUNT {
                 broken[i + j] = bits >> j & 1 == 1;
             }

@@ -146,7 +146,8 @@ impl<L: DoubleLanes> Arithmetic<L> for Interval<L> {
 impl<L: DoubleLanes> Arithmetic<L> for Jet<L> {
     #[inline(always)]
     fn constant(value: Interval<L>) -> Self {
-        Jet::constant(value)
+        let slope = Interval::splat(value.lanes, [0.0, 0.0]);
+        Self { value, slope }
     }
     #[inline(always)]
     fn unary(self, function: Unary, domain: &mut Domain<L>) -> Self {
@@ -184,15 +185,21 @@ impl<L: DoubleLanes> Arithmetic<L> for Jet<L> {
     }
     #[inline(always)]
     fn squared(self) -> Self {
-        Jet::squared(self)
+        self.chained(self.value.squared(), self.value.times_number(2.0))
     }
     #[inline(always)]
     fn times_number(self, c: f64) -> Self {
-        Jet::times_number(self, c)
+        Self {
+            value: self.value.times_number(c),
+            slope: self.slope.times_number(c),
+        }
     }
     #[inline(always)]
     fn plus_constant(self, c: Interval<L>) -> Self {
-        Jet::plus_constant(self, c)
+        Self {
+            value: self.value + c,
+            ..self
+        }
     }
     #[inline(always)]
     fn sine_cosine(self) -> (Self, Self) {

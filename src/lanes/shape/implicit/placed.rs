@@ -9,19 +9,15 @@ use crate::shape::{Query, Ray, SingularMatrix};
 
 use glam::DVec3;
 
-/// How the hits of a surface are found.
 #[derive(Debug, Clone)]
 pub enum Finder {
     /// Equal steps and bisection: proves nothing.
     SignChange,
-    /// Isolation of polynomial roots.
     Polynomial {
-        /// The surface.
         certified: Box<Certified>,
         /// Whether what double-double leaves undecided is decided exactly.
         exact: bool,
     },
-    /// Interval subdivision.
     Interval(Box<EnclosedPacket>),
     /// Sphere tracing with a proved bound.
     SphereTrace(Box<EnclosedPacket>),
@@ -90,23 +86,14 @@ impl Finder {
             Self::SphereTrace(_) => "sphere-trace",
         }
     }
-
-    /// Whether its answers are proofs.
-    pub fn is_certified(&self) -> bool {
-        !matches!(self, Self::SignChange)
-    }
 }
 
 /// How many rays each arithmetic has decided, over all implicit surfaces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ImplicitTally {
-    /// Certain in f64.
     pub double: u64,
-    /// Certain in double-double.
     pub double_double: u64,
-    /// Decided exactly.
     pub exact: u64,
-    /// Not decided.
     pub undecided: u64,
     /// Answered without proof.
     pub uncertified: u64,
@@ -122,7 +109,6 @@ impl ImplicitTally {
         }
     }
 
-    /// The counts of both together.
     pub fn joined(self, other: Self) -> Self {
         Self {
             double: self.double + other.double,
@@ -138,7 +124,6 @@ impl ImplicitTally {
     }
 }
 
-/// A surface in the world.
 #[derive(Debug, Clone)]
 pub struct PlacedImplicit {
     stepping: SteppingFinder,
@@ -162,12 +147,9 @@ pub struct ImplicitHit {
     pub tier: Option<Tier>,
 }
 
-/// What a finder knows of a ray's first hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ImplicitAnswer {
-    /// There is one.
     Found(ImplicitHit),
-    /// There is none.
     Absent,
     /// The finder's arithmetic or its work bound did not suffice.
     Undecided,

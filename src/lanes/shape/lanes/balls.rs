@@ -34,7 +34,6 @@ pub struct Balls<T> {
     largest: T,
     /// Which objects they are; places without a ball repeat the last one.
     pub objects: [u32; MOST],
-    /// How many there are.
     pub count: usize,
 }
 

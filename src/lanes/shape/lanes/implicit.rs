@@ -24,7 +24,6 @@ use crate::shape::implicit::placed::{Finder, ImplicitTally};
 use super::LaneRay;
 use crate::field::lanes::{LaneField, Scratch, each};
 
-/// An implicit surface placed in the world.
 #[derive(Debug, Clone)]
 pub struct LaneImplicit<T> {
     field: LaneField<T>,
@@ -67,7 +66,6 @@ pub struct FieldQuestion<'a, L: Lanes> {
     pub start: StartSign<L>,
     /// Hits count before this.
     pub limit: L::Real,
-    /// The rays whose answers count.
     pub active: L::Mask,
 }
 
@@ -100,7 +98,6 @@ impl<T: Scalar> LaneImplicit<T> {
         })
     }
 
-    /// How hits are found.
     pub fn finder(&self) -> &Finder {
         &self.finder
     }
@@ -284,7 +281,6 @@ impl<T: Scalar> LaneImplicit<T> {
     }
 }
 
-/// The rays of a packet as memory.
 struct PacketRays<T> {
     origin: [[T; WIDEST]; 3],
     direction: [[T; WIDEST]; 3],

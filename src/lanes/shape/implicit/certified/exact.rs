@@ -21,10 +21,8 @@ struct IntegerRay {
     scale: BigInt,
 }
 
-/// What the ray's start is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum ExactStart {
-    /// Nothing is known.
     Free,
     /// A point of the surface, rounded with this unit roundoff.
     OnSurface(f64),

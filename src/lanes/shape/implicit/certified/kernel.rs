@@ -8,7 +8,6 @@ use crate::math::lanes::{Mask, Real};
 use crate::math::words::{Pair, Plain, Row, Word};
 use crate::root::bernstein::{MOST, Problem, Roots, first_roots};
 
-/// A clipped packet.
 struct Clipped<L: DoubleLanes> {
     near: L::Real,
     far: L::Real,
@@ -286,7 +285,6 @@ fn square<L: DoubleLanes, W: Word<L>>(
     }
 }
 
-/// What is asked of a factor's coefficients.
 pub(super) struct Question<L: DoubleLanes> {
     error: L::Real,
     start_error: L::Real,
@@ -324,7 +322,6 @@ impl<L: DoubleLanes> Question<L> {
     }
 }
 
-/// An arithmetic with a solver.
 pub(super) trait Solving<L: DoubleLanes>: Word<L> {
     /// The first roots of polynomials with `count` coefficients.
     fn solve(l: L, question: &Question<L>, rows: &[Row], count: usize) -> Roots<L>;
