@@ -250,12 +250,12 @@ impl<L: DoubleLanes> Interval<L> {
     /// The smallest interval around four numbers and what rounding may have taken from them; the
     /// whole line where one of them is NaN or infinite.
     #[inline(always)]
-    fn around(l: L, [a, b, c, d]: [L::Real; 4]) -> Self {
+    pub(super) fn around(l: L, [a, b, c, d]: [L::Real; 4], relative: f64) -> Self {
         // 0 for finite numbers, NaN otherwise; minimum and maximum alone could lose a NaN.
         let check = ((a + b) + (c + d)) * l.real(0.0);
         let low = a.min(b).min(c.min(d)) + check;
         let high = a.max(b).max(c.max(d)) + check;
-        Self::new(l, down(l, low), up(l, high))
+        Self::new(l, lowered(l, low, relative), raised(l, high, relative))
     }
 }
 
@@ -297,6 +297,7 @@ impl<L: DoubleLanes> Mul for Interval<L> {
                 self.high * other.low,
                 self.high * other.high,
             ],
+            STEP,
         )
     }
 }
@@ -314,6 +315,7 @@ impl<L: DoubleLanes> Div for Interval<L> {
                 self.high / other.low,
                 self.high / other.high,
             ],
+            STEP,
         )
         .whole_where(other.may_be_zero())
     }

@@ -8,10 +8,10 @@
 
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, LN_2, LOG2_E, SQRT_2};
 
-use super::functions::{self, COS, SIN, polynomial};
+use super::functions::{self, COS, SIN, in_quadrant, polynomial};
 use super::instructions::DoubleLanes;
 use super::interval::{Domain, Interval, down, lowered, raised, up};
-use super::lanes::{Int, Mask, Real};
+use super::lanes::{Mask, Real};
 
 /// 2⁻⁵⁰, twice the kernels' bound.
 const WIDENING: f64 = 4.0 * f64::EPSILON;
@@ -81,17 +81,8 @@ fn sine_kernel<L: DoubleLanes>(l: L, x: L::Real) -> (L::Real, L::Real, L::Real) 
     let s = polynomial(l, rr, &SIN) * r;
     let c = polynomial(l, rr, &COS);
     // 2²¹ is a multiple of 4 above any |k|.
-    let quadrant = l.truncate(k + l.real(2_097_152.0)) & l.int(3);
-    let odd = (quadrant & l.int(1)).same(l.int(1));
-    let sine_negative = (quadrant & l.int(2)).same(l.int(2));
-    let cosine_negative = (quadrant.plus(l.int(1)) & l.int(2)).same(l.int(2));
-    let sine = l.select(odd, c, s);
-    let cosine = l.select(odd, s, c);
-    (
-        l.select(sine_negative, -sine, sine),
-        l.select(cosine_negative, -cosine, cosine),
-        k,
-    )
+    let (sine, cosine) = in_quadrant(l, l.truncate(k + l.real(2_097_152.0)), (s, c));
+    (sine, cosine, k)
 }
 
 /// arctan x for any x.
@@ -335,10 +326,7 @@ impl<L: DoubleLanes> Interval<L> {
             corner(x.high, y.low),
             corner(x.high, y.high),
         ];
-        let [a, b, c, d] = corners;
-        let check = ((a + b) + (c + d)) * zero;
-        let low = lowered(l, a.min(b).min(c.min(d)) + check, 2.0 * WIDENING);
-        let high = raised(l, a.max(b).max(c.max(d)) + check, 2.0 * WIDENING);
+        let Self { low, high, .. } = Self::around(l, corners, 2.0 * WIDENING);
         let origin = x.may_be_zero() & y.may_be_zero();
         let cut = !x.low.ge(zero) & y.low.lt(zero) & !y.high.lt(zero);
         let nothing = x.low.same(zero) & x.high.same(zero) & y.low.same(zero) & y.high.same(zero);

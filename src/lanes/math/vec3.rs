@@ -103,29 +103,25 @@ impl<R: Real> Vec3<R> {
     }
 }
 
-impl<R: Real> Add for Vec3<R> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        Self::new(self.x + b.x, self.y + b.y, self.z + b.z)
-    }
+macro_rules! operator {
+    ($trait:ident, $method:ident) => {
+        impl<R: Real> $trait for Vec3<R> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, b: Self) -> Self {
+                Self::new(
+                    self.x.$method(b.x),
+                    self.y.$method(b.y),
+                    self.z.$method(b.z),
+                )
+            }
+        }
+    };
 }
 
-impl<R: Real> Sub for Vec3<R> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, b: Self) -> Self {
-        Self::new(self.x - b.x, self.y - b.y, self.z - b.z)
-    }
-}
-
-impl<R: Real> Mul for Vec3<R> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, b: Self) -> Self {
-        Self::new(self.x * b.x, self.y * b.y, self.z * b.z)
-    }
-}
+operator!(Add, add);
+operator!(Sub, sub);
+operator!(Mul, mul);
 
 impl<R: Real> Neg for Vec3<R> {
     type Output = Self;

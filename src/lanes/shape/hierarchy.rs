@@ -103,10 +103,7 @@ pub struct OuterBox<T> {
 impl<T: Scalar> OuterBox<T> {
     pub fn new(bounds: &Bounds) -> Self {
         Self {
-            ends: [0, 1, 2].map(|axis| {
-                let (low, high) = outward::<T>(bounds.low[axis], bounds.high[axis]);
-                [low, high]
-            }),
+            ends: [0, 1, 2].map(|axis| outward(bounds.low[axis], bounds.high[axis])),
         }
     }
 
@@ -276,9 +273,8 @@ impl<T: Scalar> Hierarchy<T> {
             let node = &mut self.nodes[index];
             node.child[i] = child;
             for axis in 0..3 {
-                let (low, high) = outward::<T>(bounds.low[axis], bounds.high[axis]);
-                node.low[axis][i] = low;
-                node.high[axis][i] = high;
+                [node.low[axis][i], node.high[axis][i]] =
+                    outward(bounds.low[axis], bounds.high[axis]);
             }
         }
         index as u32
@@ -389,10 +385,7 @@ fn met<L: Lanes>(l: L, near: L::Real, far: L::Real) -> (L::Real, L::Mask) {
 }
 
 /// The numbers of the type that enclose an interval, with room to spare.
-fn outward<T: Scalar>(low: f64, high: f64) -> (T, T) {
+fn outward<T: Scalar>(low: f64, high: f64) -> [T; 2] {
     let slack = |x: f64| x.abs() * (2.0 * T::ROUNDOFF + 1e-14) + f64::MIN_POSITIVE;
-    (
-        T::from_f64(low - slack(low)),
-        T::from_f64(high + slack(high)),
-    )
+    [low - slack(low), high + slack(high)].map(T::from_f64)
 }

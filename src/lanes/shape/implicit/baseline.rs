@@ -14,6 +14,7 @@ use crate::math::double_double::DoubleDouble;
 use crate::math::number::{Number, power_of_two};
 use crate::root::sign_change::first_change;
 use crate::shape::implicit::Implicit;
+use crate::shape::implicit::certified::Tier;
 use crate::shape::ladder::{Ladder, ScaledRay};
 use crate::shape::{Query, Ray, SingularMatrix};
 
@@ -26,9 +27,9 @@ pub struct SteppingFinder {
     to_world: Affine,
 }
 
-/// Where a ray meets an implicit surface, as far as the baseline finder can tell.
+/// Where a ray meets an implicit surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stepped {
+pub struct ImplicitHit {
     /// Where on the ray, in units of its direction; finite.
     pub t: f64,
     /// World coordinates.
@@ -36,6 +37,12 @@ pub struct Stepped {
     /// Unit outward normal in the world; see [`normal`] for where the gradient
     /// vanishes.
     pub normal: Option<DVec3>,
+    /// Bounds of t; the estimate twice where nothing is proved.
+    pub enclosure: [f64; 2],
+    /// How many times it is a root along the ray, where that is known.
+    pub multiplicity: Option<u32>,
+    /// What has decided; `None` where nothing is proved.
+    pub tier: Option<Tier>,
 }
 
 #[derive(Clone, Copy)]
@@ -67,7 +74,7 @@ impl SteppingFinder {
 
     /// The first zero of the field, or change of its sign between two steps, with `t_min` < t <
     /// `t_max` inside the clip box; t = 0 counts where `t_min` is 0.
-    pub fn first_hit(&self, query: &Query) -> Option<Stepped> {
+    pub fn first_hit(&self, query: &Query) -> Option<ImplicitHit> {
         if !query.ray.is_valid() {
             return None;
         }
@@ -80,7 +87,14 @@ impl SteppingFinder {
         let t = scaled_t / unit;
         let normal = self.normal(line.at(scaled_t), line.direction);
         let point = query.ray.origin + query.ray.direction * t;
-        (t.is_finite() && point.is_finite()).then_some(Stepped { t, point, normal })
+        (t.is_finite() && point.is_finite()).then_some(ImplicitHit {
+            t,
+            point,
+            normal,
+            enclosure: [t, t],
+            multiplicity: None,
+            tier: None,
+        })
     }
 
     /// The unit outward normal, in the world, of a hit at t.

@@ -1,6 +1,7 @@
 //! An implicit surface in the world and a ray's first hit with it, by the finder of its choice.
 
-use super::baseline::{Stepped, SteppingFinder};
+pub use super::baseline::ImplicitHit;
+use super::baseline::SteppingFinder;
 use super::certified::{Answers, Certified, Packet, Tier, Wish, Workspace};
 use super::enclosed_packet::EnclosedPacket;
 use crate::math::affine::Affine;
@@ -131,23 +132,6 @@ pub struct PlacedImplicit {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ImplicitHit {
-    /// Where on the ray, in units of its direction; finite.
-    pub t: f64,
-    /// World coordinates.
-    pub point: DVec3,
-    /// Unit outward normal in the world; see [`normal`](crate::field::normal) for where the gradient
-    /// vanishes.
-    pub normal: Option<DVec3>,
-    /// Bounds of t; the estimate twice where nothing is proved.
-    pub enclosure: [f64; 2],
-    /// How many times it is a root along the ray, where that is known.
-    pub multiplicity: Option<u32>,
-    /// What has decided; `None` where nothing is proved.
-    pub tier: Option<Tier>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ImplicitAnswer {
     Found(ImplicitHit),
     Absent,
@@ -207,16 +191,7 @@ impl PlacedImplicit {
         let Some(answers) = answers else {
             tally.uncertified += 1;
             let stepped = self.stepping.first_hit(query);
-            return stepped.map_or(ImplicitAnswer::Absent, |Stepped { t, point, normal }| {
-                ImplicitAnswer::Found(ImplicitHit {
-                    t,
-                    point,
-                    normal,
-                    enclosure: [t, t],
-                    multiplicity: None,
-                    tier: None,
-                })
-            });
+            return stepped.map_or(ImplicitAnswer::Absent, ImplicitAnswer::Found);
         };
         let decided = (answers.found | answers.absent) & 1 == 1;
         tally.count(decided.then_some(answers.tiers[0]));

@@ -14,6 +14,7 @@ use crate::field::normal;
 use crate::math::affine::Affine;
 use crate::math::instructions::Instructions;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, WIDEST};
+use crate::math::packet::array;
 use crate::math::vec3::{Rows, Vec3};
 use crate::shape::SingularMatrix;
 use crate::shape::hierarchy::{Bounds, OuterBox};
@@ -289,12 +290,7 @@ struct PacketRays<T> {
 impl<T: Scalar> PacketRays<T> {
     #[inline(always)]
     fn new<L: Lanes<Scalar = T>>(l: L, ray: &LaneRay<L>) -> Self {
-        let stored = inlined!(|x: L::Real| {
-            let mut to = [T::default(); WIDEST];
-            l.store(x, &mut to);
-            to
-        });
-        let vector = inlined!(|v: Vec3<L::Real>| [stored(v.x), stored(v.y), stored(v.z)]);
+        let vector = inlined!(|v: Vec3<L::Real>| [array(l, v.x), array(l, v.y), array(l, v.z)]);
         Self {
             origin: vector(ray.origin),
             direction: vector(ray.direction),

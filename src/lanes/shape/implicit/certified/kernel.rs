@@ -6,7 +6,7 @@ use crate::field::program::Step;
 use crate::math::instructions::DoubleLanes;
 use crate::math::lanes::{Mask, Real};
 use crate::math::words::{Pair, Plain, Row, Word};
-use crate::root::bernstein::{MOST, Problem, Roots, first_roots};
+use crate::root::bernstein::{MOST, Question, Roots, first_roots};
 
 struct Clipped<L: DoubleLanes> {
     near: L::Real,
@@ -285,41 +285,23 @@ fn square<L: DoubleLanes, W: Word<L>>(
     }
 }
 
-pub(super) struct Question<L: DoubleLanes> {
-    error: L::Real,
-    start_error: L::Real,
-    accounted: f64,
-    roots_at_end: usize,
-    on_root: L::Mask,
-    active: L::Mask,
-}
-
-impl<L: DoubleLanes> Question<L> {
-    /// In a function of its own for M coefficients, so that its numbers can stay in registers, or
-    /// in one for up to [`MOST`].
-    #[inline(never)]
-    fn ask<W: Word<L>, const M: usize>(&self, l: L, rows: &[Row], count: usize) -> Roots<L> {
-        l.vectorize(inlined!(|| {
-            let count = if M == MOST { count } else { M };
-            let mut coefficients = [W::constant(l, [0.0; 2]); M];
-            for (i, c) in coefficients[..count].iter_mut().enumerate() {
-                *c = W::load(l, rows, i);
-            }
-            first_roots(
-                l,
-                &Problem {
-                    coefficients,
-                    count,
-                    error: self.error,
-                    on_root: self.on_root,
-                    start_error: self.start_error,
-                    roots_at_end: self.roots_at_end,
-                    accounted: self.accounted,
-                    active: self.active,
-                },
-            )
-        }))
-    }
+/// In a function of its own for M coefficients, so that its numbers can stay in registers, or in one
+/// for up to [`MOST`].
+#[inline(never)]
+fn ask<L: DoubleLanes, W: Word<L>, const M: usize>(
+    l: L,
+    question: &Question<L>,
+    rows: &[Row],
+    count: usize,
+) -> Roots<L> {
+    l.vectorize(inlined!(|| {
+        let count = if M == MOST { count } else { M };
+        let mut coefficients = [W::constant(l, [0.0; 2]); M];
+        for (i, c) in coefficients[..count].iter_mut().enumerate() {
+            *c = W::load(l, rows, i);
+        }
+        first_roots(l, &coefficients, count, question)
+    }))
 }
 
 pub(super) trait Solving<L: DoubleLanes>: Word<L> {
@@ -331,11 +313,11 @@ impl<L: DoubleLanes> Solving<L> for Plain<L> {
     #[inline(always)]
     fn solve(l: L, question: &Question<L>, rows: &[Row], count: usize) -> Roots<L> {
         match count {
-            3 => question.ask::<Self, 3>(l, rows, count),
-            5 => question.ask::<Self, 5>(l, rows, count),
-            7 => question.ask::<Self, 7>(l, rows, count),
-            9 => question.ask::<Self, 9>(l, rows, count),
-            _ => question.ask::<Self, MOST>(l, rows, count),
+            3 => ask::<_, Self, 3>(l, question, rows, count),
+            5 => ask::<_, Self, 5>(l, question, rows, count),
+            7 => ask::<_, Self, 7>(l, question, rows, count),
+            9 => ask::<_, Self, 9>(l, question, rows, count),
+            _ => ask::<_, Self, MOST>(l, question, rows, count),
         }
     }
 }
@@ -344,7 +326,7 @@ impl<L: DoubleLanes> Solving<L> for Plain<L> {
 impl<L: DoubleLanes> Solving<L> for Pair<L> {
     #[inline(always)]
     fn solve(l: L, question: &Question<L>, rows: &[Row], count: usize) -> Roots<L> {
-        question.ask::<Self, MOST>(l, rows, count)
+        ask::<_, Self, MOST>(l, question, rows, count)
     }
 }
 

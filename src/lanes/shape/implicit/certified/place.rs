@@ -114,20 +114,14 @@ impl Certified {
         let (clip, outer) = (limits(clip), limits(outer));
         let half = (0..3).map(|i| (outer.upper[i] - outer.lower[i]) / 2.0);
         let margin = MARGIN * half.fold(0.0, f64::max);
-        let free = |face: f64, at: f64| (at - face).abs() > margin;
+        let kept = |face: f64, at: f64, free: f64| {
+            let is_free = (at - face).abs() > margin;
+            if is_free { free } else { face }
+        };
+        let (low, high) = (f64::NEG_INFINITY, f64::INFINITY);
         let cut = Limits {
-            lower: [0, 1, 2].map(|i| {
-                let free = free(clip.lower[i], outer.lower[i]);
-                if free {
-                    f64::NEG_INFINITY
-                } else {
-                    clip.lower[i]
-                }
-            }),
-            upper: [0, 1, 2].map(|i| {
-                let free = free(clip.upper[i], outer.upper[i]);
-                if free { f64::INFINITY } else { clip.upper[i] }
-            }),
+            lower: [0, 1, 2].map(|i| kept(clip.lower[i], outer.lower[i], low)),
+            upper: [0, 1, 2].map(|i| kept(clip.upper[i], outer.upper[i], high)),
         };
         let is_cut = cut.lower.iter().chain(&cut.upper).any(|x| x.is_finite());
         let reach = [0, 1, 2].map(|i| outer.lower[i].abs().max(outer.upper[i].abs()) + margin);
