@@ -15,7 +15,7 @@ pub mod bounds;
 use num_bigint::BigInt;
 use num_integer::Integer;
 use num_rational::BigRational;
-use num_traits::{One, ToPrimitive, Zero};
+use num_traits::{CheckedAdd, CheckedMul, One, ToPrimitive, Zero};
 
 use super::tape::{Binary, Operation, Tape, Unary};
 use crate::math::number::Number;
@@ -109,7 +109,7 @@ impl Program {
         scale: &N,
         highest: usize,
     ) -> Option<Vec<N>> {
-        let mut rows = vec![N::default(); self.rows];
+        let mut rows = vec![N::zero(); self.rows];
         for step in &self.steps {
             match step {
                 Step::Coordinate { axis, to } => {
@@ -118,8 +118,8 @@ impl Program {
                 Step::Product { a, b, to } => {
                     for i in 0..=a.degree.min(highest) {
                         for j in 0..=b.degree.min(highest - i) {
-                            let product = rows[a.at + i].times(&rows[b.at + j])?;
-                            rows[to.at + i + j] = rows[to.at + i + j].plus(&product)?;
+                            let product = rows[a.at + i].checked_mul(&rows[b.at + j])?;
+                            rows[to.at + i + j] = rows[to.at + i + j].checked_add(&product)?;
                         }
                     }
                 }
@@ -128,7 +128,7 @@ impl Program {
                     constant,
                     to,
                 } => {
-                    let mut sum = vec![N::default(); to.degree.min(highest) + 1];
+                    let mut sum = vec![N::zero(); to.degree.min(highest) + 1];
                     sum[0] = N::of(&constant.exact)?;
                     let mut degree = 0;
                     for (factor, form) in terms {
@@ -136,7 +136,7 @@ impl Program {
                         degree = form.degree;
                         let factor = N::of(&factor.exact)?;
                         for (i, s) in sum.iter_mut().enumerate().take(degree + 1) {
-                            *s = s.plus(&factor.times(&rows[form.at + i])?)?;
+                            *s = s.checked_add(&factor.checked_mul(&rows[form.at + i])?)?;
                         }
                     }
                     raise(&mut sum, to.degree - degree, scale)?;
@@ -153,47 +153,26 @@ impl Program {
 fn raise<N: Whole>(form: &mut [N], degrees: usize, scale: &N) -> Option<()> {
     for _ in 0..degrees {
         for c in form.iter_mut() {
-            *c = c.times(scale)?;
+            *c = c.checked_mul(scale)?;
         }
     }
     Some(())
 }
 
 /// Integers; operations give `None` where their range ends.
-pub trait Whole: Clone + Default {
+pub trait Whole: Clone + Zero + CheckedAdd + CheckedMul {
     fn of(x: &BigInt) -> Option<Self>;
-    fn plus(&self, other: &Self) -> Option<Self>;
-    fn times(&self, other: &Self) -> Option<Self>;
-    fn vanishes(&self) -> bool;
 }
 
 impl Whole for BigInt {
     fn of(x: &BigInt) -> Option<Self> {
         Some(x.clone())
     }
-    fn plus(&self, other: &Self) -> Option<Self> {
-        Some(self + other)
-    }
-    fn times(&self, other: &Self) -> Option<Self> {
-        Some(self * other)
-    }
-    fn vanishes(&self) -> bool {
-        self.is_zero()
-    }
 }
 
 impl Whole for i128 {
     fn of(x: &BigInt) -> Option<Self> {
         x.to_i128()
-    }
-    fn plus(&self, other: &Self) -> Option<Self> {
-        self.checked_add(*other)
-    }
-    fn times(&self, other: &Self) -> Option<Self> {
-        self.checked_mul(*other)
-    }
-    fn vanishes(&self) -> bool {
-        *self == 0
     }
 }
 

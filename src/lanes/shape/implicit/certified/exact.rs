@@ -235,7 +235,7 @@ pub(super) fn order_of_vanishing(
 }
 
 fn first_other_than_zero<N: Whole>(powers: &[N]) -> Option<usize> {
-    powers.iter().position(|c| !c.vanishes())
+    powers.iter().position(|c| !c.is_zero())
 }
 
 fn trailing<'a>(numbers: impl Iterator<Item = &'a BigInt>) -> u64 {
