@@ -11,6 +11,17 @@
     reason = "an inner crate: what users see is documented at the door of etalon, and here what a name does not say"
 )]
 
+/// A closure that is always inlined, as one over lanes must be to be compiled for the instruction
+/// set of its caller; an attribute may stand on an argument but not on the right of `let`.
+macro_rules! inlined {
+    ($($closure:tt)*) => {
+        $crate::math::lanes::inlined(
+            #[inline(always)]
+            $($closure)*
+        )
+    };
+}
+
 pub mod camera;
 pub mod declare;
 #[doc(hidden)]

@@ -7,7 +7,6 @@
 use num_rational::BigRational;
 
 use super::tape::{Algebra, Binary, Unary};
-use crate::math::lanes::inlined;
 
 /// What an arithmetic needs besides, for derivatives.
 pub trait Differentiable: Algebra {
@@ -29,7 +28,6 @@ pub struct Gradients<'a, A>(pub &'a A);
 #[derive(Debug, Clone, PartialEq)]
 pub struct WithGradient<V> {
     pub value: V,
-    /// Derivatives along x, y and z.
     pub gradient: [Option<V>; 3],
 }
 
@@ -104,13 +102,10 @@ impl<A: Differentiable> Gradients<'_, A> {
         a: &WithGradient<A::Value>,
         p: impl Fn(&A::Value) -> A::Value,
     ) -> [Option<A::Value>; 3] {
-        three(
-            #[inline(always)]
-            |i| match &a.gradient[i] {
-                Some(da) => Some(p(da)),
-                None => None,
-            },
-        )
+        three(inlined!(|i: usize| match &a.gradient[i] {
+            Some(da) => Some(p(da)),
+            None => None,
+        }))
     }
 
     /// p·da + q·db, each only where it is there.
@@ -122,18 +117,16 @@ impl<A: Differentiable> Gradients<'_, A> {
         p: impl Fn(&A::Value) -> A::Value,
         q: impl Fn(&A::Value) -> A::Value,
     ) -> [Option<A::Value>; 3] {
-        three(
-            #[inline(always)]
-            |i| match (&a.gradient[i], &b.gradient[i]) {
+        three(inlined!(
+            |i: usize| match (&a.gradient[i], &b.gradient[i]) {
                 (None, None) => None,
                 (Some(da), None) => Some(p(da)),
                 (None, Some(db)) => Some(q(db)),
                 (Some(da), Some(db)) => Some(self.sum(&p(da), &q(db))),
-            },
-        )
+            }
+        ))
     }
 
-    /// The gradient of the one or the other.
     #[inline(always)]
     fn chosen(
         &self,
@@ -141,17 +134,14 @@ impl<A: Differentiable> Gradients<'_, A> {
         below: &WithGradient<A::Value>,
         above: &WithGradient<A::Value>,
     ) -> [Option<A::Value>; 3] {
-        three(
-            #[inline(always)]
-            |i| {
-                let (below, above) = (&below.gradient[i], &above.gradient[i]);
-                let zero = || self.0.number(0.0);
-                (below.is_some() || above.is_some()).then(|| {
-                    let part = |x: &Option<A::Value>| x.clone().unwrap_or_else(zero);
-                    self.0.where_negative(s, &part(below), &part(above))
-                })
-            },
-        )
+        three(inlined!(|i: usize| {
+            let (below, above) = (&below.gradient[i], &above.gradient[i]);
+            let zero = || self.0.number(0.0);
+            (below.is_some() || above.is_some()).then(|| {
+                let part = |x: &Option<A::Value>| x.clone().unwrap_or_else(zero);
+                self.0.where_negative(s, &part(below), &part(above))
+            })
+        }))
     }
 }
 
@@ -162,10 +152,7 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
     fn coordinate(&self, axis: usize) -> Self::Value {
         WithGradient {
             value: self.0.coordinate(axis),
-            gradient: three(
-                #[inline(always)]
-                |i| (i == axis).then(|| self.0.number(1.0)),
-            ),
+            gradient: three(inlined!(|i: usize| (i == axis).then(|| self.0.number(1.0)))),
         }
     }
 
@@ -181,11 +168,7 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
     fn unary(&self, function: Unary, a: &Self::Value) -> Self::Value {
         let value = self.0.unary(function, &a.value);
         if function == Unary::Negative {
-            let gradient = self.all(
-                a,
-                #[inline(always)]
-                |d| self.negative(d),
-            );
+            let gradient = self.all(a, inlined!(|d: &A::Value| self.negative(d)));
             return WithGradient { value, gradient };
         }
         if a.gradient.iter().all(Option::is_none) {
@@ -193,11 +176,7 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
             return WithGradient { value, gradient };
         }
         let slope = self.slope(function, &a.value, &value);
-        let gradient = self.all(
-            a,
-            #[inline(always)]
-            |d| self.product(&slope, d),
-        );
+        let gradient = self.all(a, inlined!(|d: &A::Value| self.product(&slope, d)));
         WithGradient { value, gradient }
     }
 
@@ -205,34 +184,23 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
     fn binary(&self, function: Binary, a: &Self::Value, b: &Self::Value) -> Self::Value {
         let (x, y) = (&a.value, &b.value);
         let value = self.0.binary(function, x, y);
-        let same = inlined(
-            #[inline(always)]
-            |d: &A::Value| d.clone(),
-        );
+        let same = inlined!(|d: &A::Value| d.clone());
         let gradient = match function {
             Binary::Sum => self.combined(a, b, same, same),
-            Binary::Difference => self.combined(
-                a,
-                b,
-                same,
-                #[inline(always)]
-                |d| self.negative(d),
-            ),
+            Binary::Difference => {
+                self.combined(a, b, same, inlined!(|d: &A::Value| self.negative(d)))
+            }
             Binary::Product => self.combined(
                 a,
                 b,
-                #[inline(always)]
-                |d| self.product(d, y),
-                #[inline(always)]
-                |d| self.product(d, x),
+                inlined!(|d: &A::Value| self.product(d, y)),
+                inlined!(|d: &A::Value| self.product(d, x)),
             ),
             Binary::Quotient => self.combined(
                 a,
                 b,
-                #[inline(always)]
-                |d| self.quotient(d, y),
-                #[inline(always)]
-                |d| self.negative(&self.quotient(&self.product(&value, d), y)),
+                inlined!(|d: &A::Value| self.quotient(d, y)),
+                inlined!(|d: &A::Value| self.negative(&self.quotient(&self.product(&value, d), y))),
             ),
             Binary::Minimum => self.chosen(&self.difference(x, y), a, b),
             Binary::Maximum => self.chosen(&self.difference(x, y), b, a),
@@ -242,20 +210,21 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
                 self.combined(
                     a,
                     b,
-                    #[inline(always)]
-                    |d| self.quotient(&self.product(y, d), &square),
-                    #[inline(always)]
-                    |d| self.negative(&self.quotient(&self.product(x, d), &square)),
+                    inlined!(|d: &A::Value| self.quotient(&self.product(y, d), &square)),
+                    inlined!(
+                        |d: &A::Value| self.negative(&self.quotient(&self.product(x, d), &square))
+                    ),
                 )
             }
             // d aᵇ = aᵇ (b/a da + ln a db).
             Binary::Power => self.combined(
                 a,
                 b,
-                #[inline(always)]
-                |d| self.product(&value, &self.quotient(&self.product(y, d), x)),
-                #[inline(always)]
-                |d| self.product(&value, &self.product(&self.0.unary(Unary::Logarithm, x), d)),
+                inlined!(
+                    |d: &A::Value| self.product(&value, &self.quotient(&self.product(y, d), x))
+                ),
+                inlined!(|d: &A::Value| self
+                    .product(&value, &self.product(&self.0.unary(Unary::Logarithm, x), d))),
             ),
         };
         WithGradient { value, gradient }
@@ -269,11 +238,7 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
             _ => self.0.whole_power(&a.value, n - 1),
         };
         let slope = self.product(&self.0.number(f64::from(n)), &below);
-        let gradient = self.all(
-            a,
-            #[inline(always)]
-            |d| self.product(&slope, d),
-        );
+        let gradient = self.all(a, inlined!(|d: &A::Value| self.product(&slope, d)));
         WithGradient { value, gradient }
     }
 }

@@ -17,14 +17,12 @@ pub struct Field {
 }
 
 impl Field {
-    /// Rounds the constants of a tape.
     pub fn new(tape: &Tape) -> Self {
         let constants = tape.constants().iter().map(nearest).collect();
         let tape = tape.clone();
         Self { tape, constants }
     }
 
-    /// The operations.
     pub fn tape(&self) -> &Tape {
         &self.tape
     }
@@ -62,7 +60,6 @@ pub fn nearest(exact: &BigRational) -> f64 {
     exact.to_f64().unwrap_or(f64::NAN)
 }
 
-/// f64 arithmetic at a point.
 struct Numbers<'a> {
     constants: &'a [f64],
     point: DVec3,

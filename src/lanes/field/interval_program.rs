@@ -14,7 +14,6 @@ use arithmetic::Arithmetic;
 pub use arithmetic::Side;
 use compiler::Compiler;
 
-/// One operation on registers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Step {
     Coordinate(usize),
@@ -38,7 +37,6 @@ pub struct IntervalProgram {
 }
 
 impl IntervalProgram {
-    /// The program of a tape.
     pub fn new(tape: &Tape) -> Self {
         Compiler::new(tape).run()
     }
@@ -77,14 +75,11 @@ impl IntervalProgram {
         coordinates: &[Interval<L>; 3],
         registers: &mut Vec<Interval<L>>,
     ) -> (Interval<L>, Domain<L>) {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let mut domain = Domain::unbroken(l);
-                let value = self.run(l, coordinates, Interval::whole(l), registers, &mut domain);
-                (value, domain)
-            },
-        )
+        l.vectorize(inlined!(|| {
+            let mut domain = Domain::unbroken(l);
+            let value = self.run(l, coordinates, Interval::whole(l), registers, &mut domain);
+            (value, domain)
+        }))
     }
 
     /// Enclosures of the field and of its slope along the coordinates' own slopes. A stage, too.
@@ -95,18 +90,15 @@ impl IntervalProgram {
         coordinates: &[Jet<L>; 3],
         registers: &mut Vec<Jet<L>>,
     ) -> (Jet<L>, Domain<L>) {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let anything = Jet {
-                    value: Interval::whole(l),
-                    slope: Interval::whole(l),
-                };
-                let mut domain = Domain::unbroken(l);
-                let jet = self.run(l, coordinates, anything, registers, &mut domain);
-                (jet, domain)
-            },
-        )
+        l.vectorize(inlined!(|| {
+            let anything = Jet {
+                value: Interval::whole(l),
+                slope: Interval::whole(l),
+            };
+            let mut domain = Domain::unbroken(l);
+            let jet = self.run(l, coordinates, anything, registers, &mut domain);
+            (jet, domain)
+        }))
     }
 
     /// An enclosure of the field on one combination of sides of its first three operations that
@@ -120,17 +112,14 @@ impl IntervalProgram {
         place: usize,
         registers: &mut Vec<Side<L>>,
     ) -> (Interval<L>, L::Mask) {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let mut domain = Domain::with_sides(l, place);
-                let [x, y, z] = *coordinates;
-                let coordinates = [Side(x), Side(y), Side(z)];
-                let anything = Side(Interval::whole(l));
-                let value = self.run(l, &coordinates, anything, registers, &mut domain);
-                (value.0, domain.void)
-            },
-        )
+        l.vectorize(inlined!(|| {
+            let mut domain = Domain::with_sides(l, place);
+            let [x, y, z] = *coordinates;
+            let coordinates = [Side(x), Side(y), Side(z)];
+            let anything = Side(Interval::whole(l));
+            let value = self.run(l, &coordinates, anything, registers, &mut domain);
+            (value.0, domain.void)
+        }))
     }
 
     #[inline(always)]

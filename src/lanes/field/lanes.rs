@@ -25,7 +25,6 @@ impl<L: Lanes, const W: usize> Default for Scratch<L, W> {
 }
 
 impl<T: Scalar> LaneField<T> {
-    /// Rounds the constants of a tape.
     pub fn new(tape: &Tape) -> Self {
         let rounded = |c: &BigRational| T::from_f64(evaluate::nearest(c));
         let constants = tape.constants().iter().map(rounded).collect();
@@ -74,31 +73,17 @@ impl<T: Scalar> LaneField<T> {
             lanes,
             constants: &self.constants,
             points: [
-                each(
-                    zero,
-                    #[inline(always)]
-                    |i| points[i].x,
-                ),
-                each(
-                    zero,
-                    #[inline(always)]
-                    |i| points[i].y,
-                ),
-                each(
-                    zero,
-                    #[inline(always)]
-                    |i| points[i].z,
-                ),
+                each(zero, inlined!(|i: usize| points[i].x)),
+                each(zero, inlined!(|i: usize| points[i].y)),
+                each(zero, inlined!(|i: usize| points[i].z)),
             ],
         }
     }
 }
 
-/// Lane arithmetic at some packets of points.
 struct Packets<'a, L: Lanes, const W: usize> {
     lanes: L,
     constants: &'a [L::Scalar],
-    /// x, y and z of each packet.
     points: [[L::Real; W]; 3],
 }
 
@@ -113,7 +98,6 @@ pub fn each<R: Copy, const W: usize>(start: R, f: impl Fn(usize) -> R) -> [R; W]
     array
 }
 
-/// A function of one value, lane by lane in f64.
 #[inline(never)]
 fn by_lane<L: Lanes>(l: L, function: Unary, a: L::Real) -> L::Real {
     let mut result = a;
@@ -124,7 +108,6 @@ fn by_lane<L: Lanes>(l: L, function: Unary, a: L::Real) -> L::Real {
     result
 }
 
-/// A function of two values, lane by lane in f64.
 #[inline(never)]
 fn by_lane_of_two<L: Lanes>(l: L, function: Binary, a: L::Real, b: L::Real) -> L::Real {
     let mut result = a;
@@ -166,25 +149,12 @@ impl<L: Lanes, const W: usize> Algebra for Packets<'_, L, W> {
     fn unary(&self, function: Unary, a: &Self::Value) -> Self::Value {
         let zero = self.lanes.real(0.0);
         match function {
-            Unary::Negative => each(
-                zero,
-                #[inline(always)]
-                |i| -a[i],
-            ),
-            Unary::SquareRoot => each(
-                zero,
-                #[inline(always)]
-                |i| a[i].sqrt(),
-            ),
-            Unary::Absolute => each(
-                zero,
-                #[inline(always)]
-                |i| a[i].abs(),
-            ),
+            Unary::Negative => each(zero, inlined!(|i: usize| -a[i])),
+            Unary::SquareRoot => each(zero, inlined!(|i: usize| a[i].sqrt())),
+            Unary::Absolute => each(zero, inlined!(|i: usize| a[i].abs())),
             _ => each(
                 zero,
-                #[inline(always)]
-                |i| by_lane(self.lanes, function, a[i]),
+                inlined!(|i: usize| by_lane(self.lanes, function, a[i])),
             ),
         }
     }
@@ -197,8 +167,7 @@ impl<L: Lanes, const W: usize> Algebra for Packets<'_, L, W> {
             ($function:expr) => {
                 each(
                     zero,
-                    #[inline(always)]
-                    |i| of_two(self.lanes, $function, a[i], b[i]),
+                    inlined!(|i: usize| of_two(self.lanes, $function, a[i], b[i])),
                 )
             };
         }
@@ -214,19 +183,14 @@ impl<L: Lanes, const W: usize> Algebra for Packets<'_, L, W> {
     fn whole_power(&self, a: &Self::Value, n: i32) -> Self::Value {
         let (zero, one) = (self.lanes.real(0.0), self.lanes.real(1.0));
         if n == 2 {
-            return each(
-                zero,
-                #[inline(always)]
-                |i| a[i] * a[i],
-            );
+            return each(zero, inlined!(|i: usize| a[i] * a[i]));
         }
         each(
             zero,
-            #[inline(always)]
-            |i| {
+            inlined!(|i: usize| {
                 let power = evaluate::repeated(a[i], n.unsigned_abs(), one);
                 if n < 0 { one / power } else { power }
-            },
+            }),
         )
     }
 }
@@ -247,8 +211,7 @@ impl<L: Lanes, const W: usize> Differentiable for Packets<'_, L, W> {
         let zero = self.lanes.real(0.0);
         each(
             zero,
-            #[inline(always)]
-            |i| self.lanes.select(s[i].lt(zero), below[i], above[i]),
+            inlined!(|i: usize| self.lanes.select(s[i].lt(zero), below[i], above[i])),
         )
     }
 }

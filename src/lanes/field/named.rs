@@ -5,9 +5,7 @@ use super::expression::{Expression, ExpressionError, Parameter, parse};
 /// A named surface: its field (negative inside), its parameters, its usual clip box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NamedSurface {
-    /// Name in scene files.
     pub name: &'static str,
-    /// The field as an expression.
     pub expression: &'static str,
     /// Parameters with their usual values, as decimals.
     pub parameters: &'static [(&'static str, &'static str)],
@@ -17,7 +15,6 @@ pub struct NamedSurface {
     pub source: &'static str,
 }
 
-/// The named surfaces.
 pub const SURFACES: &[NamedSurface] = &[
     NamedSurface {
         name: "heart",
@@ -96,7 +93,6 @@ pub const SURFACES: &[NamedSurface] = &[
     },
 ];
 
-/// The surface with a name.
 pub fn find(name: &str) -> Option<&'static NamedSurface> {
     SURFACES.iter().find(|surface| surface.name == name)
 }

@@ -12,85 +12,49 @@ use glam::DVec3;
 use num_rational::BigRational;
 
 use super::tape::{Algebra, Binary, Tape, Unary};
+use crate::math::interval::{Interval, ScalarInterval, enclosing_rational};
+use crate::math::scalar_lane::One;
 
 /// Halvings of the clip box: faces are found to a 64th of it.
 const LEVELS: u32 = 6;
 /// Most cells looked at for a face; beyond, the outermost that is left is taken.
 const MOST_CELLS: usize = 1 << 12;
 
-/// Ends of an interval.
-type Interval = [f64; 2];
+struct Cell([ScalarInterval; 3]);
 
-/// A cell as three intervals.
-struct Cell([Interval; 3]);
-
-const EVERYTHING: Interval = [f64::NEG_INFINITY, f64::INFINITY];
-
-fn outward([low, high]: Interval) -> Interval {
-    if low.is_nan() || high.is_nan() {
-        return EVERYTHING;
-    }
-    [low.next_down(), high.next_up()]
-}
-
-fn hull(values: [f64; 4]) -> Interval {
-    if values.iter().any(|v| v.is_nan()) {
-        return EVERYTHING;
-    }
-    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    outward([low, high])
-}
-
-fn product(a: &Interval, b: &Interval) -> Interval {
-    hull([a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]])
-}
-
-/// aⁿ: by repeated products of the magnitude, with the sign of odd powers.
-fn power(a: &Interval, n: u32) -> Interval {
-    let magnitude = |x: f64| (1..n).fold([x, x], |p, _| product(&p, &[x, x]));
-    if n == 0 {
-        return [1.0; 2];
-    }
-    let (low, high) = (magnitude(a[0].abs()), magnitude(a[1].abs()));
-    if n.is_multiple_of(2) {
-        if a[0] <= 0.0 && a[1] >= 0.0 {
-            return [0.0, low[1].max(high[1])];
-        }
-        return [low[0].min(high[0]), low[1].max(high[1])];
-    }
-    let signed = |x: f64, m: Interval| if x < 0.0 { [-m[1], -m[0]] } else { m };
-    [signed(a[0], low)[0], signed(a[1], high)[1]]
+fn everything() -> ScalarInterval {
+    Interval::whole(One)
 }
 
 impl Algebra for Cell {
-    type Value = Interval;
-    fn coordinate(&self, axis: usize) -> Interval {
+    type Value = ScalarInterval;
+    fn coordinate(&self, axis: usize) -> ScalarInterval {
         self.0[axis]
     }
-    fn constant(&self, _: usize, exact: &BigRational) -> Interval {
-        let x = super::program::nearest(exact);
-        [x.next_down(), x.next_up()]
+    fn constant(&self, _: usize, exact: &BigRational) -> ScalarInterval {
+        Interval::splat(One, enclosing_rational(exact))
     }
-    fn unary(&self, function: Unary, a: &Interval) -> Interval {
+    fn unary(&self, function: Unary, a: &ScalarInterval) -> ScalarInterval {
         match function {
-            Unary::Negative => [-a[1], -a[0]],
-            _ => EVERYTHING,
+            Unary::Negative => -*a,
+            _ => everything(),
         }
     }
-    fn binary(&self, function: Binary, a: &Interval, b: &Interval) -> Interval {
+    fn binary(&self, function: Binary, a: &ScalarInterval, b: &ScalarInterval) -> ScalarInterval {
         match function {
-            Binary::Sum => outward([a[0] + b[0], a[1] + b[1]]),
-            Binary::Difference => outward([a[0] - b[1], a[1] - b[0]]),
-            Binary::Product => product(a, b),
-            Binary::Quotient if b[0] > 0.0 || b[1] < 0.0 => {
-                hull([a[0] / b[0], a[0] / b[1], a[1] / b[0], a[1] / b[1]])
-            }
-            _ => EVERYTHING,
+            Binary::Sum => *a + *b,
+            Binary::Difference => *a - *b,
+            Binary::Product => *a * *b,
+            Binary::Quotient => *a / *b,
+            _ => everything(),
         }
     }
-    fn whole_power(&self, a: &Interval, n: i32) -> Interval {
-        u32::try_from(n).map_or(EVERYTHING, |n| power(a, n))
+    fn whole_power(&self, a: &ScalarInterval, n: i32) -> ScalarInterval {
+        if n < 0 {
+            everything()
+        } else {
+            a.whole_power(n)
+        }
     }
 }
 
@@ -162,16 +126,15 @@ fn face(fields: &[Tape], whole: [DVec3; 2], axis: usize, upper: bool) -> Option<
     Some(if upper { outermost } else { -outermost })
 }
 
-fn may_vanish(fields: &[Tape], cell: [DVec3; 2], scratch: &mut Vec<Interval>) -> bool {
+fn may_vanish(fields: &[Tape], cell: [DVec3; 2], scratch: &mut Vec<ScalarInterval>) -> bool {
     let [low, high] = [cell[0].to_array(), cell[1].to_array()];
-    let intervals = Cell([0, 1, 2].map(|i| [low[i], high[i]]));
+    let intervals = Cell([0, 1, 2].map(|i| Interval::splat(One, [low[i], high[i]])));
     fields.iter().any(|tape| {
         let value = tape.evaluate(&intervals, scratch);
-        value.is_none_or(|[low, high]| !(low > 0.0 || high < 0.0))
+        value.is_none_or(|value| value.may_be_zero())
     })
 }
 
-/// One eighth of a cell.
 fn octant_of(cell: [DVec3; 2], middle: DVec3, octant: usize) -> [DVec3; 2] {
     let mut part = cell;
     for axis in 0..3 {

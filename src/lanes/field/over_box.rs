@@ -6,11 +6,10 @@ use glam::DVec3;
 use super::interval_program::IntervalProgram;
 use super::tape::Tape;
 use crate::math::instructions::{DoubleLanes, Instructions, Job};
-use crate::math::interval::{Interval, bits};
+use crate::math::interval::Interval;
 use crate::math::jet::Jet;
 use crate::math::lanes::Mask;
 
-/// What is known of a field over a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OverBox {
     /// It is defined nowhere in the box.
@@ -88,9 +87,9 @@ impl Job<f64> for Survey<'_> {
                     let along = coordinates(&place, axis);
                     let (jet, domain) = self.program.jet(l, &along, &mut registers);
                     squares = squares + jet.slope.squared();
-                    known.undefined &= bits(domain.void) == every;
-                    known.maybe_undefined |= bits(domain.broken) != 0;
-                    known.empty &= bits(jet.value.may_be_zero() & !domain.void) == 0;
+                    known.undefined &= domain.void.bits() == every;
+                    known.maybe_undefined |= domain.broken.bits() != 0;
+                    known.empty &= (jet.value.may_be_zero() & !domain.void).bits() == 0;
                     axis += 1;
                 }
                 let length = squares.square_root().high;

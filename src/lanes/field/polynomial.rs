@@ -42,7 +42,6 @@ impl Polynomial {
         .reduced()
     }
 
-    /// The same value everywhere.
     pub fn constant(value: &BigRational) -> Self {
         Self::new([([0; 3], value.numer().clone())], value.denom().clone())
     }
@@ -63,7 +62,6 @@ impl Polynomial {
         tape.evaluate(&recognition, &mut Vec::new())?
     }
 
-    /// Removes zeros and common factors.
     fn reduced(mut self) -> Self {
         self.terms.retain(|_, c| !c.is_zero());
         let mut common = self.denominator.clone();
@@ -111,12 +109,10 @@ impl Polynomial {
         sums.max().unwrap_or(0)
     }
 
-    /// Whether it is zero everywhere.
     pub fn is_zero(&self) -> bool {
         self.terms.is_empty()
     }
 
-    /// Whether it is the same everywhere.
     pub fn is_constant(&self) -> bool {
         self.degree() == 0
     }
@@ -135,7 +131,6 @@ impl Polynomial {
         primitive
     }
 
-    /// Derivative along an axis.
     pub fn derivative(&self, axis: usize) -> Self {
         let lowered = self
             .terms
@@ -149,7 +144,6 @@ impl Polynomial {
         Self::new(lowered, self.denominator.clone())
     }
 
-    /// Derivatives along x, y and z.
     pub fn gradient(&self) -> [Self; 3] {
         [0, 1, 2].map(|axis| self.derivative(axis))
     }
@@ -167,7 +161,6 @@ impl Polynomial {
         self.plus(&other.negated())
     }
 
-    /// Its opposite.
     pub fn negated(&self) -> Self {
         let terms = self.terms.iter().map(|(e, c)| (*e, -c));
         Self {
@@ -191,7 +184,6 @@ impl Polynomial {
         .reduced()
     }
 
-    /// The exact value at a point.
     pub fn value(&self, point: &[BigRational; 3]) -> BigRational {
         let degrees = [0, 1, 2].map(|i| self.terms.keys().map(|e| e[i]).max().unwrap_or(0));
         let powers = [0, 1, 2].map(|i| Powers::new(&point[i], degrees[i]));

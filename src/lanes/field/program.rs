@@ -15,7 +15,7 @@ pub mod bounds;
 use num_bigint::BigInt;
 use num_integer::Integer;
 use num_rational::BigRational;
-use num_traits::{One, ToPrimitive, Zero};
+use num_traits::{CheckedAdd, CheckedMul, One, ToPrimitive, Zero};
 
 use super::tape::{Binary, Operation, Tape, Unary};
 use crate::math::number::Number;
@@ -33,7 +33,6 @@ pub struct Form {
     pub degree: usize,
 }
 
-/// A constant as the arithmetics want it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Factor {
     /// The nearest f64 and the nearest f64 of the rest.
@@ -42,19 +41,14 @@ pub struct Factor {
     pub exact: BigInt,
 }
 
-/// One operation on forms.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
-    /// The coordinate x, y or z.
     Coordinate {
-        /// 0, 1, 2.
         axis: usize,
         /// Result, of degree 1.
         to: Form,
     },
-    /// a · b.
     Product {
-        /// One operand.
         a: Form,
         /// The other; the same one for a square.
         b: Form,
@@ -93,12 +87,10 @@ impl Program {
         Emission::new(&algebra).program(field, raised)
     }
 
-    /// The operations.
     pub fn steps(&self) -> &[Step] {
         &self.steps
     }
 
-    /// Where the field is.
     pub fn result(&self) -> Form {
         self.result
     }
@@ -117,7 +109,7 @@ impl Program {
         scale: &N,
         highest: usize,
     ) -> Option<Vec<N>> {
-        let mut rows = vec![N::default(); self.rows];
+        let mut rows = vec![N::zero(); self.rows];
         for step in &self.steps {
             match step {
                 Step::Coordinate { axis, to } => {
@@ -126,8 +118,8 @@ impl Program {
                 Step::Product { a, b, to } => {
                     for i in 0..=a.degree.min(highest) {
                         for j in 0..=b.degree.min(highest - i) {
-                            let product = rows[a.at + i].times(&rows[b.at + j])?;
-                            rows[to.at + i + j] = rows[to.at + i + j].plus(&product)?;
+                            let product = rows[a.at + i].checked_mul(&rows[b.at + j])?;
+                            rows[to.at + i + j] = rows[to.at + i + j].checked_add(&product)?;
                         }
                     }
                 }
@@ -136,7 +128,7 @@ impl Program {
                     constant,
                     to,
                 } => {
-                    let mut sum = vec![N::default(); to.degree.min(highest) + 1];
+                    let mut sum = vec![N::zero(); to.degree.min(highest) + 1];
                     sum[0] = N::of(&constant.exact)?;
                     let mut degree = 0;
                     for (factor, form) in terms {
@@ -144,7 +136,7 @@ impl Program {
                         degree = form.degree;
                         let factor = N::of(&factor.exact)?;
                         for (i, s) in sum.iter_mut().enumerate().take(degree + 1) {
-                            *s = s.plus(&factor.times(&rows[form.at + i])?)?;
+                            *s = s.checked_add(&factor.checked_mul(&rows[form.at + i])?)?;
                         }
                     }
                     raise(&mut sum, to.degree - degree, scale)?;
@@ -161,33 +153,20 @@ impl Program {
 fn raise<N: Whole>(form: &mut [N], degrees: usize, scale: &N) -> Option<()> {
     for _ in 0..degrees {
         for c in form.iter_mut() {
-            *c = c.times(scale)?;
+            *c = c.checked_mul(scale)?;
         }
     }
     Some(())
 }
 
 /// Integers; operations give `None` where their range ends.
-pub trait Whole: Clone + Default {
+pub trait Whole: Clone + Zero + CheckedAdd + CheckedMul {
     fn of(x: &BigInt) -> Option<Self>;
-    fn plus(&self, other: &Self) -> Option<Self>;
-    fn times(&self, other: &Self) -> Option<Self>;
-    /// Whether it is 0.
-    fn vanishes(&self) -> bool;
 }
 
 impl Whole for BigInt {
     fn of(x: &BigInt) -> Option<Self> {
         Some(x.clone())
-    }
-    fn plus(&self, other: &Self) -> Option<Self> {
-        Some(self + other)
-    }
-    fn times(&self, other: &Self) -> Option<Self> {
-        Some(self * other)
-    }
-    fn vanishes(&self) -> bool {
-        self.is_zero()
     }
 }
 
@@ -195,21 +174,10 @@ impl Whole for i128 {
     fn of(x: &BigInt) -> Option<Self> {
         x.to_i128()
     }
-    fn plus(&self, other: &Self) -> Option<Self> {
-        self.checked_add(*other)
-    }
-    fn times(&self, other: &Self) -> Option<Self> {
-        self.checked_mul(*other)
-    }
-    fn vanishes(&self) -> bool {
-        *self == 0
-    }
 }
 
-/// Which of the algebra's atoms.
 type AtomIndex = usize;
 
-/// What sums are made of.
 #[derive(Debug, Clone, PartialEq)]
 enum Atom {
     Coordinate(usize),
@@ -363,7 +331,6 @@ struct Placed {
     denominator: BigInt,
 }
 
-/// Writes the operations down.
 struct Emission<'a> {
     algebra: &'a Algebra,
     steps: Vec<Step>,

@@ -16,8 +16,3 @@ pub fn square_root(c: &BigRational) -> Option<BigRational> {
     // In lowest terms numerator and denominator are squares on their own.
     Some(BigRational::new_raw(root(c.numer())?, root(c.denom())?))
 }
-
-/// The number an f64 is; `None` where it is not finite.
-pub fn from_f64(x: f64) -> Option<BigRational> {
-    BigRational::from_float(x)
-}

@@ -10,14 +10,12 @@ use super::tape::{Binary, Operation, Place, Tape, Unary};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Factor {
     pub tape: Tape,
-    /// How often it is a factor.
     pub multiplicity: u32,
 }
 
 /// A field as ± a positive constant × its factors, each to its multiplicity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Factors {
-    /// Whether the constant is negative.
     pub negative: bool,
     /// The factors, each different; at least one unless the field is constant.
     pub factors: Vec<Factor>,
@@ -141,7 +139,6 @@ impl Tape {
         }
     }
 
-    /// The constant at a place.
     fn at(&self, place: Place) -> Option<&BigRational> {
         match self.operations()[place] {
             Operation::Constant(index) => Some(&self.constants()[index]),
@@ -211,7 +208,6 @@ impl Factors {
     }
 }
 
-/// The places an operation reads.
 pub fn operands(operation: &Operation) -> [Option<Place>; 2] {
     match *operation {
         Operation::Coordinate(_) | Operation::Constant(_) => [None, None],

@@ -9,45 +9,31 @@ use num_rational::BigRational;
 /// Where on the tape a result stands.
 pub type Place = usize;
 
-/// Functions of one value.
+/// Functions of one value; angles are in radians, logarithms natural.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Unary {
-    /// −a.
     Negative,
-    /// √a.
     SquareRoot,
     Absolute,
-    /// eᵃ.
     Exponential,
-    /// Natural logarithm.
     Logarithm,
-    /// Sine of radians.
     Sine,
-    /// Cosine of radians.
     Cosine,
-    /// Tangent of radians.
     Tangent,
-    /// Arc sine in radians.
     ArcSine,
-    /// Arc cosine in radians.
     ArcCosine,
-    /// Arc tangent in radians.
     ArcTangent,
     HyperbolicSine,
     HyperbolicCosine,
     HyperbolicTangent,
 }
 
-/// Functions of two values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Binary {
     Sum,
-    /// a − b.
     Difference,
-    /// a · b.
     Product,
     Quotient,
-    /// The smaller.
     Minimum,
     Maximum,
     /// Angle of the point (b, a), radians in (−π, π].
@@ -60,11 +46,8 @@ pub enum Binary {
 pub enum Operation {
     /// x, y or z: 0, 1, 2.
     Coordinate(usize),
-    /// A constant, by its index.
     Constant(usize),
-    /// A function of an earlier result.
     Unary(Unary, Place),
-    /// A function of two earlier results.
     Binary(Binary, Place, Place),
     /// An earlier result to a whole power; negative ones divide.
     WholePower(Place, i32),
@@ -74,13 +57,9 @@ pub enum Operation {
 pub trait Algebra {
     type Value: Clone;
     fn coordinate(&self, axis: usize) -> Self::Value;
-    /// The constant with this index.
     fn constant(&self, index: usize, exact: &BigRational) -> Self::Value;
-    /// A function of one value.
     fn unary(&self, function: Unary, a: &Self::Value) -> Self::Value;
-    /// A function of two values.
     fn binary(&self, function: Binary, a: &Self::Value, b: &Self::Value) -> Self::Value;
-    /// aⁿ.
     fn whole_power(&self, a: &Self::Value, n: i32) -> Self::Value;
 }
 
@@ -111,12 +90,10 @@ impl Tape {
         self.push(Operation::Constant(index))
     }
 
-    /// The operations; the last one is the field.
     pub fn operations(&self) -> &[Operation] {
         &self.operations
     }
 
-    /// The constants by index.
     pub fn constants(&self) -> &[BigRational] {
         &self.constants
     }

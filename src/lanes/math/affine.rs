@@ -22,7 +22,6 @@ impl Affine {
         ],
     };
 
-    /// Scaling along the axes.
     pub fn scale(s: DVec3) -> Self {
         Self {
             rows: [
@@ -33,7 +32,6 @@ impl Affine {
         }
     }
 
-    /// Translation.
     pub fn translate(t: DVec3) -> Self {
         Self {
             rows: [
@@ -59,7 +57,6 @@ impl Affine {
         Self { rows }
     }
 
-    /// Image of a point.
     pub fn point(&self, p: DVec3) -> DVec3 {
         self.vector(p) + DVec3::new(self.rows[0][3], self.rows[1][3], self.rows[2][3])
     }
@@ -74,13 +71,11 @@ impl Affine {
         )
     }
 
-    /// Images of the axes.
     pub fn columns(&self) -> [DVec3; 3] {
         let r = &self.rows;
         std::array::from_fn(|j| DVec3::new(r[0][j], r[1][j], r[2][j]))
     }
 
-    /// Image of the origin.
     pub fn translation(&self) -> DVec3 {
         let r = &self.rows;
         DVec3::new(r[0][3], r[1][3], r[2][3])

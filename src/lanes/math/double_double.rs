@@ -7,7 +7,7 @@
 use std::cmp::Ordering;
 
 use super::exact::Exact;
-use super::number::{Number, no_less, power_of_two, quotient_error, square_root_error};
+use super::number::{Number, no_less, quotient_error, scaled, square_root_error};
 
 /// An unevaluated sum hi + lo, |lo| ≤ ulp(hi)/2, with a bound of its distance to the truth.
 #[derive(Debug, Clone, Copy)]
@@ -88,17 +88,8 @@ impl DoubleDouble {
 
 impl Number for DoubleDouble {
     fn scaled(x: f64, exponent: i32) -> Self {
-        let hi = x * power_of_two(exponent);
-        let exact = exponent == 0 || x == 0.0 || hi.abs() >= f64::MIN_POSITIVE;
-        Self {
-            hi,
-            lo: 0.0,
-            error: match (hi.is_finite(), exact) {
-                (false, _) => f64::INFINITY,
-                (true, true) => 0.0,
-                (true, false) => ROUNDING * SMALL,
-            },
-        }
+        let (hi, error) = scaled(x, exponent, ROUNDING * SMALL);
+        Self { hi, lo: 0.0, error }
     }
 
     fn enclosing(x: &Exact) -> Self {
@@ -135,11 +126,6 @@ impl Number for DoubleDouble {
             lo,
             error: INFLATION * (self.error + other.error + ROUNDING * hi.abs()),
         }
-    }
-
-    #[inline]
-    fn minus(&self, other: &Self) -> Self {
-        self.plus(&other.negated())
     }
 
     #[inline]

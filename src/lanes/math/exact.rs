@@ -111,10 +111,6 @@ impl Number for Exact {
         }
     }
 
-    fn minus(&self, other: &Self) -> Self {
-        self.plus(&other.negated())
-    }
-
     fn times(&self, other: &Self) -> Self {
         Self {
             mantissa: &self.mantissa * &other.mantissa,

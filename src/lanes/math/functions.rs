@@ -75,9 +75,19 @@ pub fn sin_cos_eighth<L: Lanes>(l: L, u: L::Real) -> (L::Real, L::Real) {
 pub fn sin_cos_turns<L: Lanes>(l: L, u: L::Real) -> (L::Real, L::Real) {
     let quarter = (u * l.real(4.0)).round();
     let x = quarter.mul_add(l.real(-0.25), u) * l.real(std::f64::consts::TAU);
-    let (s, c) = near_zero(l, x);
+    let near = near_zero(l, x);
     // + 8 keeps the quadrant number positive; 8 ≡ 0 (mod 4).
-    let quadrant = l.truncate(quarter + l.real(8.0)) & l.int(3);
+    in_quadrant(l, l.truncate(quarter + l.real(8.0)), near)
+}
+
+/// (sin, cos) of an angle from those of what it exceeds so many right angles by.
+#[inline(always)]
+pub(super) fn in_quadrant<L: Lanes>(
+    l: L,
+    quadrant: L::Int,
+    (s, c): (L::Real, L::Real),
+) -> (L::Real, L::Real) {
+    let quadrant = quadrant & l.int(3);
     let odd = (quadrant & l.int(1)).same(l.int(1));
     let sin_negative = (quadrant & l.int(2)).same(l.int(2));
     let cos_negative = (quadrant.plus(l.int(1)) & l.int(2)).same(l.int(2));

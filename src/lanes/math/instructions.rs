@@ -4,13 +4,11 @@ use fearless_simd::Level;
 
 use super::lanes::{Lanes, Scalar};
 
-/// Lanes of f64.
 pub trait DoubleLanes: Lanes<Scalar = f64> {}
 impl<L: Lanes<Scalar = f64>> DoubleLanes for L {}
 
 /// Something to do in lanes of T, whatever the instruction set.
 pub trait Job<T: Scalar>: Sized {
-    /// What comes of it.
     type Output;
     /// Does it; to be inlined into the caller, which is compiled for the instruction set.
     fn run<L: Lanes<Scalar = T>>(self, lanes: L) -> Self::Output;
@@ -25,9 +23,7 @@ pub trait Job<T: Scalar>: Sized {
 /// Which scalars the lanes are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
-    /// f32.
     Single,
-    /// f64.
     Double,
 }
 
@@ -50,7 +46,6 @@ impl Precision {
         }
     }
 
-    /// The nearest number of this precision.
     pub fn rounded(self, x: f64) -> f64 {
         match self {
             Self::Single => f64::from(x as f32),
@@ -108,7 +103,6 @@ impl Instructions {
         all
     }
 
-    /// The best that this machine has.
     pub fn best() -> Self {
         Self::of(Level::new())
     }
@@ -145,15 +139,10 @@ impl Instructions {
         }
     }
 
-    /// Does a job in lanes of T.
     pub fn run<T: Scalar, J: Job<T>>(self, job: J) -> J::Output {
         macro_rules! on {
             ($lanes:expr, $run:ident) => {
-                on(
-                    $lanes,
-                    #[inline(always)]
-                    |lanes| job.$run(lanes),
-                )
+                on($lanes, inlined!(|lanes| job.$run(lanes)))
             };
         }
         match self {
@@ -182,8 +171,5 @@ impl Instructions {
 /// The boundary at which code for an instruction set begins.
 #[inline(never)]
 fn on<L: Lanes, R>(lanes: L, work: impl FnOnce(L) -> R) -> R {
-    lanes.vectorize(
-        #[inline(always)]
-        || work(lanes),
-    )
+    lanes.vectorize(inlined!(|| work(lanes)))
 }

@@ -23,12 +23,11 @@ use num_rational::BigRational;
 use num_traits::ToPrimitive;
 
 use super::instructions::DoubleLanes;
-use super::lanes::{Mask, Real};
+use super::lanes::Real;
 use super::scalar_lane::One;
 
 /// u (1 + 2u), see the module's head.
 const STEP: f64 = (1.0 + f64::EPSILON) * (0.5 * f64::EPSILON);
-/// The smallest positive number.
 const TINY: f64 = f64::from_bits(1);
 
 /// A number at or below whatever rounds to `x`; −∞ for NaN and +∞.
@@ -61,7 +60,6 @@ pub(super) fn raised<L: DoubleLanes>(l: L, x: L::Real, relative: f64) -> L::Real
 /// All real numbers from `low` to `high`, in each lane.
 #[derive(Debug, Clone, Copy)]
 pub struct Interval<L: DoubleLanes> {
-    /// The kind of lanes.
     pub lanes: L,
     /// The lower bound; −∞ where there is none.
     pub low: L::Real,
@@ -69,7 +67,6 @@ pub struct Interval<L: DoubleLanes> {
     pub high: L::Real,
 }
 
-/// A single interval.
 pub type ScalarInterval = Interval<One>;
 
 impl<L: DoubleLanes> Interval<L> {
@@ -85,19 +82,16 @@ impl<L: DoubleLanes> Interval<L> {
         Self::new(lanes, lanes.real(low), lanes.real(high))
     }
 
-    /// A number and nothing else.
     #[inline(always)]
     pub fn point(lanes: L, x: L::Real) -> Self {
         Self::new(lanes, x, x)
     }
 
-    /// All real numbers.
     #[inline(always)]
     pub fn whole(lanes: L) -> Self {
         Self::splat(lanes, [f64::NEG_INFINITY, f64::INFINITY])
     }
 
-    /// One lane's bounds.
     #[inline(always)]
     pub fn lane(&self, i: usize) -> [f64; 2] {
         [self.lanes.lane(self.low, i), self.lanes.lane(self.high, i)]
@@ -114,7 +108,6 @@ impl<L: DoubleLanes> Interval<L> {
         )
     }
 
-    /// The whole line where the mask is true.
     #[inline(always)]
     pub fn whole_where(self, mask: L::Mask) -> Self {
         Self::whole(self.lanes).or_where_not(mask, self)
@@ -127,7 +120,6 @@ impl<L: DoubleLanes> Interval<L> {
         !(self.low.gt(zero) | self.high.lt(zero))
     }
 
-    /// The smallest interval that holds both.
     #[inline(always)]
     pub fn hull(self, other: Self) -> Self {
         Self::new(
@@ -137,17 +129,6 @@ impl<L: DoubleLanes> Interval<L> {
         )
     }
 
-    /// What is in both, for two enclosures of the same number.
-    #[inline(always)]
-    pub fn meet(self, other: Self) -> Self {
-        Self::new(
-            self.lanes,
-            self.low.max(other.low),
-            self.high.min(other.high),
-        )
-    }
-
-    /// The largest |x|.
     #[inline(always)]
     pub fn magnitude(&self) -> L::Real {
         self.low.abs().max(self.high.abs())
@@ -165,7 +146,6 @@ impl<L: DoubleLanes> Interval<L> {
         Self::new(self.lanes, self.mignitude(), self.magnitude())
     }
 
-    /// The smaller of two numbers.
     #[inline(always)]
     pub fn smaller(self, other: Self) -> Self {
         Self::new(
@@ -175,7 +155,6 @@ impl<L: DoubleLanes> Interval<L> {
         )
     }
 
-    /// The larger of two numbers.
     #[inline(always)]
     pub fn larger(self, other: Self) -> Self {
         Self::new(
@@ -185,7 +164,6 @@ impl<L: DoubleLanes> Interval<L> {
         )
     }
 
-    /// x².
     #[inline(always)]
     pub fn squared(self) -> Self {
         self.absolute().nonnegative_product(self.absolute())
@@ -201,7 +179,6 @@ impl<L: DoubleLanes> Interval<L> {
         Self::new(l, low, up(l, self.high.sqrt()))
     }
 
-    /// x · c for a number c.
     #[inline(always)]
     pub fn times_number(self, c: f64) -> Self {
         let l = self.lanes;
@@ -273,12 +250,12 @@ impl<L: DoubleLanes> Interval<L> {
     /// The smallest interval around four numbers and what rounding may have taken from them; the
     /// whole line where one of them is NaN or infinite.
     #[inline(always)]
-    fn around(l: L, [a, b, c, d]: [L::Real; 4]) -> Self {
+    pub(super) fn around(l: L, [a, b, c, d]: [L::Real; 4], relative: f64) -> Self {
         // 0 for finite numbers, NaN otherwise; minimum and maximum alone could lose a NaN.
         let check = ((a + b) + (c + d)) * l.real(0.0);
         let low = a.min(b).min(c.min(d)) + check;
         let high = a.max(b).max(c.max(d)) + check;
-        Self::new(l, down(l, low), up(l, high))
+        Self::new(l, lowered(l, low, relative), raised(l, high, relative))
     }
 }
 
@@ -320,6 +297,7 @@ impl<L: DoubleLanes> Mul for Interval<L> {
                 self.high * other.low,
                 self.high * other.high,
             ],
+            STEP,
         )
     }
 }
@@ -337,6 +315,7 @@ impl<L: DoubleLanes> Div for Interval<L> {
                 self.high / other.low,
                 self.high / other.high,
             ],
+            STEP,
         )
         .whole_where(other.may_be_zero())
     }
@@ -366,7 +345,6 @@ pub fn enclosing_rational(x: &BigRational) -> [f64; 2] {
     }
 }
 
-/// y ≤ x for finite y.
 fn at_most(y: f64, x: &BigRational) -> bool {
     BigRational::from_float(y).is_some_and(|y| y <= *x)
 }
@@ -388,7 +366,6 @@ pub struct Domain<L: DoubleLanes> {
 const SIDES: usize = 3;
 
 impl<L: DoubleLanes> Domain<L> {
-    /// Defined and continuous everywhere.
     #[inline(always)]
     pub fn unbroken(l: L) -> Self {
         Self {
@@ -402,10 +379,7 @@ impl<L: DoubleLanes> Domain<L> {
     /// The same, for lanes from `place` on of eight that take all combinations of sides.
     #[inline(always)]
     pub fn with_sides(l: L, place: usize) -> Self {
-        let side = crate::math::lanes::inlined(
-            #[inline(always)]
-            |bits: u32| l.mask_from_bits(bits >> place),
-        );
+        let side = inlined!(|bits: u32| l.mask_from_bits(bits >> place));
         Self {
             sides: [side(0xaa), side(0xcc), side(0xf0)],
             ..Self::unbroken(l)
@@ -426,10 +400,4 @@ impl<L: DoubleLanes> Domain<L> {
         self.broken = self.broken | broken;
         self.void = self.void | void;
     }
-}
-
-/// Bit i is set where the mask is true in lane i.
-#[inline(always)]
-pub fn bits<M: Mask>(mask: M) -> u32 {
-    mask.bits()
 }

@@ -8,10 +8,10 @@
 
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, LN_2, LOG2_E, SQRT_2};
 
-use super::functions::{self, COS, SIN, polynomial};
+use super::functions::{self, COS, SIN, in_quadrant, polynomial};
 use super::instructions::DoubleLanes;
 use super::interval::{Domain, Interval, down, lowered, raised, up};
-use super::lanes::{Int, Mask, Real};
+use super::lanes::{Mask, Real};
 
 /// 2⁻⁵⁰, twice the kernels' bound.
 const WIDENING: f64 = 4.0 * f64::EPSILON;
@@ -81,17 +81,8 @@ fn sine_kernel<L: DoubleLanes>(l: L, x: L::Real) -> (L::Real, L::Real, L::Real) 
     let s = polynomial(l, rr, &SIN) * r;
     let c = polynomial(l, rr, &COS);
     // 2²¹ is a multiple of 4 above any |k|.
-    let quadrant = l.truncate(k + l.real(2_097_152.0)) & l.int(3);
-    let odd = (quadrant & l.int(1)).same(l.int(1));
-    let sine_negative = (quadrant & l.int(2)).same(l.int(2));
-    let cosine_negative = (quadrant.plus(l.int(1)) & l.int(2)).same(l.int(2));
-    let sine = l.select(odd, c, s);
-    let cosine = l.select(odd, s, c);
-    (
-        l.select(sine_negative, -sine, sine),
-        l.select(cosine_negative, -cosine, cosine),
-        k,
-    )
+    let (sine, cosine) = in_quadrant(l, l.truncate(k + l.real(2_097_152.0)), (s, c));
+    (sine, cosine, k)
 }
 
 /// arctan x for any x.
@@ -140,7 +131,6 @@ fn small_sinh_kernel<L: DoubleLanes>(l: L, x: L::Real) -> L::Real {
 }
 
 impl<L: DoubleLanes> Interval<L> {
-    /// √x.
     #[inline(always)]
     pub fn square_root_noted(self, domain: &mut Domain<L>) -> Self {
         let zero = self.lanes.real(0.0);
@@ -156,7 +146,6 @@ impl<L: DoubleLanes> Interval<L> {
         self / other
     }
 
-    /// eˣ.
     #[inline(always)]
     pub fn exponential(self) -> Self {
         let l = self.lanes;
@@ -174,15 +163,12 @@ impl<L: DoubleLanes> Interval<L> {
         let (zero, infinity) = (l.real(0.0), l.real(f64::INFINITY));
         let positive = self.low.gt(zero);
         domain.note(!positive, !self.high.gt(zero));
-        let at = crate::math::lanes::inlined(
-            #[inline(always)]
-            |x: L::Real| {
-                let small = x.lt(l.real(f64::MIN_POSITIVE));
-                let scaled = l.select(small, x * l.real(18_014_398_509_481_984.0), x);
-                let ln = functions::ln(l, scaled);
-                l.select(small, ln - l.real(54.0 * LN_2), ln)
-            },
-        );
+        let at = inlined!(|x: L::Real| {
+            let small = x.lt(l.real(f64::MIN_POSITIVE));
+            let scaled = l.select(small, x * l.real(18_014_398_509_481_984.0), x);
+            let ln = functions::ln(l, scaled);
+            l.select(small, ln - l.real(54.0 * LN_2), ln)
+        });
         let low = lowered(l, at(self.low), 2.0 * WIDENING);
         let high = raised(l, at(self.high), 2.0 * WIDENING);
         let unbounded = l.real(f64::NEG_INFINITY);
@@ -193,7 +179,6 @@ impl<L: DoubleLanes> Interval<L> {
         )
     }
 
-    /// (sin x, cos x).
     #[inline(always)]
     pub fn sine_cosine(self) -> (Self, Self) {
         let l = self.lanes;
@@ -201,35 +186,26 @@ impl<L: DoubleLanes> Interval<L> {
         let (sa, ca, ka) = sine_kernel(l, self.low);
         let (sb, cb, kb) = sine_kernel(l, self.high);
         let slack = ka.abs().max(kb.abs()) * l.real(1.0 / (1u128 << 105) as f64);
-        let between = crate::math::lanes::inlined(
-            #[inline(always)]
-            |a: L::Real, b: L::Real| {
-                let low = lowered(l, a.min(b), WIDENING) - slack;
-                let high = raised(l, a.max(b), WIDENING) + slack;
-                (low, high)
-            },
-        );
+        let between = inlined!(|a: L::Real, b: L::Real| {
+            let low = lowered(l, a.min(b), WIDENING) - slack;
+            let high = raised(l, a.max(b), WIDENING) + slack;
+            (low, high)
+        });
         // The ends in turns, outward: 1/(2π) is off by u relative, the product by u more.
         let turns = l.real(0.5 * FRAC_1_PI);
         let from = lowered(l, self.low * turns, WIDENING);
         let to = raised(l, self.high * turns, WIDENING);
         // Whether a whole number plus `shift` lies in [from, to].
-        let passes = crate::math::lanes::inlined(
-            #[inline(always)]
-            |shift: f64| {
-                let shift = l.real(shift);
-                up(l, to - shift).floor().ge(down(l, from - shift))
-            },
-        );
+        let passes = inlined!(|shift: f64| {
+            let shift = l.real(shift);
+            up(l, to - shift).floor().ge(down(l, from - shift))
+        });
         let huge = !(self.low.ge(l.real(-LARGEST_ANGLE)) & self.high.le(l.real(LARGEST_ANGLE)));
-        let bounded = crate::math::lanes::inlined(
-            #[inline(always)]
-            |(low, high): (L::Real, L::Real), top: f64, bottom: f64| {
-                let low = l.select(huge | passes(bottom), -one, low);
-                let high = l.select(huge | passes(top), one, high);
-                Self::new(l, low.max(-one), high.min(one))
-            },
-        );
+        let bounded = inlined!(|(low, high): (L::Real, L::Real), top: f64, bottom: f64| {
+            let low = l.select(huge | passes(bottom), -one, low);
+            let high = l.select(huge | passes(top), one, high);
+            Self::new(l, low.max(-one), high.min(one))
+        });
         (
             bounded(between(sa, sb), 0.25, 0.75),
             bounded(between(ca, cb), 0.0, 0.5),
@@ -247,16 +223,13 @@ impl<L: DoubleLanes> Interval<L> {
         let (s, c, k) = sine_kernel(l, middle);
         let slack = up(l, k.abs() * l.real(1.0 / (1u128 << 105) as f64) + radius);
         let huge = !(self.low.ge(l.real(-LARGEST_ANGLE)) & self.high.le(l.real(LARGEST_ANGLE)));
-        let around = crate::math::lanes::inlined(
-            #[inline(always)]
-            |x: L::Real| {
-                let low = down(l, lowered(l, x, WIDENING) - slack);
-                let high = up(l, raised(l, x, WIDENING) + slack);
-                let low = l.select(huge, -one, low.max(-one));
-                let high = l.select(huge, one, high.min(one));
-                Self::new(l, low, high)
-            },
-        );
+        let around = inlined!(|x: L::Real| {
+            let low = down(l, lowered(l, x, WIDENING) - slack);
+            let high = up(l, raised(l, x, WIDENING) + slack);
+            let low = l.select(huge, -one, low.max(-one));
+            let high = l.select(huge, one, high.min(one));
+            Self::new(l, low, high)
+        });
         (around(s), around(c))
     }
 
@@ -271,13 +244,10 @@ impl<L: DoubleLanes> Interval<L> {
         let huge = !(self.low.ge(l.real(-LARGEST_ANGLE)) & self.high.le(l.real(LARGEST_ANGLE)));
         let pole = huge | to.floor().ge(from);
         domain.note(pole, l.mask(false));
-        let at = crate::math::lanes::inlined(
-            #[inline(always)]
-            |x: L::Real| {
-                let (s, c) = Self::point(l, x).sine_cosine_thin();
-                s / c
-            },
-        );
+        let at = inlined!(|x: L::Real| {
+            let (s, c) = Self::point(l, x).sine_cosine_thin();
+            s / c
+        });
         let (low, high) = (at(self.low), at(self.high));
         Self::new(l, low.low, high.high).whole_where(pole)
     }
@@ -295,13 +265,10 @@ impl<L: DoubleLanes> Interval<L> {
     pub fn arc_sine(self, domain: &mut Domain<L>) -> Self {
         let l = self.lanes;
         let (a, b) = self.clipped_to_one(domain);
-        let at = crate::math::lanes::inlined(
-            #[inline(always)]
-            |x: Self| {
-                let one = Self::splat(l, [1.0, 1.0]);
-                (x / ((one - x) * (one + x)).square_root()).arc_tangent()
-            },
-        );
+        let at = inlined!(|x: Self| {
+            let one = Self::splat(l, [1.0, 1.0]);
+            (x / ((one - x) * (one + x)).square_root()).arc_tangent()
+        });
         Self::new(l, at(a).low, at(b).high)
     }
 
@@ -310,14 +277,11 @@ impl<L: DoubleLanes> Interval<L> {
     pub fn arc_cosine(self, domain: &mut Domain<L>) -> Self {
         let l = self.lanes;
         let (a, b) = self.clipped_to_one(domain);
-        let at = crate::math::lanes::inlined(
-            #[inline(always)]
-            |x: Self| {
-                let one = Self::splat(l, [1.0, 1.0]);
-                let angle = ((one - x) / (one + x)).square_root().arc_tangent();
-                angle.times_number(2.0)
-            },
-        );
+        let at = inlined!(|x: Self| {
+            let one = Self::splat(l, [1.0, 1.0]);
+            let angle = ((one - x) / (one + x)).square_root().arc_tangent();
+            angle.times_number(2.0)
+        });
         let [_, pi] = PI;
         Self::new(l, at(b).low.max(l.real(0.0)), at(a).high.min(l.real(pi)))
     }
@@ -329,10 +293,7 @@ impl<L: DoubleLanes> Interval<L> {
         let one = l.real(1.0);
         let inside = self.low.ge(-one) & self.high.le(one);
         domain.note(!inside, self.low.gt(one) | self.high.lt(-one));
-        let clip = crate::math::lanes::inlined(
-            #[inline(always)]
-            |x: L::Real| Self::point(l, x.max(-one).min(one)),
-        );
+        let clip = inlined!(|x: L::Real| Self::point(l, x.max(-one).min(one)));
         (clip(self.low), clip(self.high))
     }
 
@@ -348,30 +309,24 @@ impl<L: DoubleLanes> Interval<L> {
         let l = self.lanes;
         let zero = l.real(0.0);
         let (x, y) = (other, self);
-        let corner = crate::math::lanes::inlined(
-            #[inline(always)]
-            |x: L::Real, y: L::Real| {
-                // The quotient of the smaller by the larger magnitude; x ≥ |y|: arctan(y/x);
-                // y > 0: π/2 − arctan(x/y); y < 0: −π/2 − arctan(x/y); x < 0: ±π + arctan(y/x).
-                let steep = y.abs().gt(x.abs());
-                let (numerator, denominator) = (l.select(steep, -x, y), l.select(steep, y, x));
-                let angle = atan_kernel(l, numerator / denominator);
-                let flat = l.select(x.lt(zero), l.real(2.0 * FRAC_PI_2), zero);
-                let constant = l.select(steep, l.real(FRAC_PI_2), flat);
-                let constant = l.select(y.lt(zero), -constant, constant);
-                constant + angle
-            },
-        );
+        let corner = inlined!(|x: L::Real, y: L::Real| {
+            // The quotient of the smaller by the larger magnitude; x ≥ |y|: arctan(y/x);
+            // y > 0: π/2 − arctan(x/y); y < 0: −π/2 − arctan(x/y); x < 0: ±π + arctan(y/x).
+            let steep = y.abs().gt(x.abs());
+            let (numerator, denominator) = (l.select(steep, -x, y), l.select(steep, y, x));
+            let angle = atan_kernel(l, numerator / denominator);
+            let flat = l.select(x.lt(zero), l.real(2.0 * FRAC_PI_2), zero);
+            let constant = l.select(steep, l.real(FRAC_PI_2), flat);
+            let constant = l.select(y.lt(zero), -constant, constant);
+            constant + angle
+        });
         let corners = [
             corner(x.low, y.low),
             corner(x.low, y.high),
             corner(x.high, y.low),
             corner(x.high, y.high),
         ];
-        let [a, b, c, d] = corners;
-        let check = ((a + b) + (c + d)) * zero;
-        let low = lowered(l, a.min(b).min(c.min(d)) + check, 2.0 * WIDENING);
-        let high = raised(l, a.max(b).max(c.max(d)) + check, 2.0 * WIDENING);
+        let Self { low, high, .. } = Self::around(l, corners, 2.0 * WIDENING);
         let origin = x.may_be_zero() & y.may_be_zero();
         let cut = !x.low.ge(zero) & y.low.lt(zero) & !y.high.lt(zero);
         let nothing = x.low.same(zero) & x.high.same(zero) & y.low.same(zero) & y.high.same(zero);
@@ -386,16 +341,13 @@ impl<L: DoubleLanes> Interval<L> {
     #[inline(always)]
     pub fn hyperbolic_sine(self) -> Self {
         let l = self.lanes;
-        let at = crate::math::lanes::inlined(
-            #[inline(always)]
-            |x: L::Real| {
-                let small = x.abs().le(l.real(1.0));
-                let series = small_sinh_kernel(l, x);
-                let point = Self::point(l, x);
-                let far = (point.exponential() - (-point).exponential()).times_number(0.5);
-                increasing(l, series, series).or_where_not(small, far)
-            },
-        );
+        let at = inlined!(|x: L::Real| {
+            let small = x.abs().le(l.real(1.0));
+            let series = small_sinh_kernel(l, x);
+            let point = Self::point(l, x);
+            let far = (point.exponential() - (-point).exponential()).times_number(0.5);
+            increasing(l, series, series).or_where_not(small, far)
+        });
         Self::new(l, at(self.low).low, at(self.high).high)
     }
 
@@ -403,13 +355,10 @@ impl<L: DoubleLanes> Interval<L> {
     #[inline(always)]
     pub fn hyperbolic_cosine(self) -> Self {
         let l = self.lanes;
-        let at = crate::math::lanes::inlined(
-            #[inline(always)]
-            |x: L::Real| {
-                let point = Self::point(l, x);
-                (point.exponential() + (-point).exponential()).times_number(0.5)
-            },
-        );
+        let at = inlined!(|x: L::Real| {
+            let point = Self::point(l, x);
+            (point.exponential() + (-point).exponential()).times_number(0.5)
+        });
         let low = at(self.mignitude()).low.max(l.real(1.0));
         Self::new(l, low, at(self.magnitude()).high)
     }
@@ -419,25 +368,22 @@ impl<L: DoubleLanes> Interval<L> {
     pub fn hyperbolic_tangent(self) -> Self {
         let l = self.lanes;
         let one = l.real(1.0);
-        let at = crate::math::lanes::inlined(
-            #[inline(always)]
-            |x: L::Real| {
-                let small = x.abs().le(one);
-                let point = Self::point(l, x);
-                let near = point.hyperbolic_sine() / point.hyperbolic_cosine();
-                let unit = Self::splat(l, [1.0, 1.0]);
-                // Beyond 20 tanh is within 1e-17 of 1; the clipping keeps the quotient finite.
-                let twice = Self::point(l, x.abs().min(l.real(20.0)) * l.real(2.0));
-                let far = unit - unit.times_number(2.0) / (twice.exponential() + unit);
-                let far = Self::new(
-                    l,
-                    far.low,
-                    l.select(x.abs().gt(l.real(20.0)), one, far.high),
-                );
-                let far = (-far).or_where_not(x.lt(l.real(0.0)), far);
-                near.or_where_not(small, far)
-            },
-        );
+        let at = inlined!(|x: L::Real| {
+            let small = x.abs().le(one);
+            let point = Self::point(l, x);
+            let near = point.hyperbolic_sine() / point.hyperbolic_cosine();
+            let unit = Self::splat(l, [1.0, 1.0]);
+            // Beyond 20 tanh is within 1e-17 of 1; the clipping keeps the quotient finite.
+            let twice = Self::point(l, x.abs().min(l.real(20.0)) * l.real(2.0));
+            let far = unit - unit.times_number(2.0) / (twice.exponential() + unit);
+            let far = Self::new(
+                l,
+                far.low,
+                l.select(x.abs().gt(l.real(20.0)), one, far.high),
+            );
+            let far = (-far).or_where_not(x.lt(l.real(0.0)), far);
+            near.or_where_not(small, far)
+        });
         let (low, high) = (at(self.low), at(self.high));
         Self::new(l, low.low.max(-one), high.high.min(one))
     }

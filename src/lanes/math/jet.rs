@@ -8,22 +8,13 @@ use super::instructions::DoubleLanes;
 use super::interval::{Domain, Interval};
 use super::lanes::Real;
 
-/// A value and its derivative.
 #[derive(Clone, Copy)]
 pub struct Jet<L: DoubleLanes> {
     pub value: Interval<L>,
-    /// The derivative.
     pub slope: Interval<L>,
 }
 
 impl<L: DoubleLanes> Jet<L> {
-    #[inline(always)]
-    pub fn constant(value: Interval<L>) -> Self {
-        let slope = Interval::splat(value.lanes, [0.0, 0.0]);
-        Self { value, slope }
-    }
-
-    /// −a.
     #[inline(always)]
     pub fn negated(self) -> Self {
         Self {
@@ -40,7 +31,6 @@ impl<L: DoubleLanes> Jet<L> {
         }
     }
 
-    /// a − b.
     #[inline(always)]
     pub fn minus(self, other: Self) -> Self {
         Self {
@@ -49,30 +39,11 @@ impl<L: DoubleLanes> Jet<L> {
         }
     }
 
-    /// a · b.
     #[inline(always)]
     pub fn times(self, other: Self) -> Self {
         Self {
             value: self.value * other.value,
             slope: self.slope * other.value + self.value * other.slope,
-        }
-    }
-
-    /// a + c for a constant.
-    #[inline(always)]
-    pub fn plus_constant(self, c: Interval<L>) -> Self {
-        Self {
-            value: self.value + c,
-            slope: self.slope,
-        }
-    }
-
-    /// a · c for a number c.
-    #[inline(always)]
-    pub fn times_number(self, c: f64) -> Self {
-        Self {
-            value: self.value.times_number(c),
-            slope: self.slope.times_number(c),
         }
     }
 
@@ -94,13 +65,6 @@ impl<L: DoubleLanes> Jet<L> {
         }
     }
 
-    /// a².
-    #[inline(always)]
-    pub fn squared(self) -> Self {
-        self.chained(self.value.squared(), self.value.times_number(2.0))
-    }
-
-    /// aⁿ.
     #[inline(always)]
     pub fn whole_power(self, n: i32, domain: &mut Domain<L>) -> Self {
         if n < 0 {
@@ -130,7 +94,6 @@ impl<L: DoubleLanes> Jet<L> {
         }
     }
 
-    /// The smaller of two.
     #[inline(always)]
     pub fn smaller(self, other: Self) -> Self {
         let both = self.slope.hull(other.slope);
@@ -145,7 +108,6 @@ impl<L: DoubleLanes> Jet<L> {
         }
     }
 
-    /// The larger of two.
     #[inline(always)]
     pub fn larger(self, other: Self) -> Self {
         self.negated().smaller(other.negated()).negated()

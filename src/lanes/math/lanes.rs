@@ -14,6 +14,19 @@ use super::instructions::Instructions;
 use super::lookup::SMALL;
 use super::scalar_lane::{One, OneSingle};
 
+/// Methods of lanes that are functions of another name.
+macro_rules! delegate {
+    ($(fn $method:ident(self $(, $other:ident)*) -> $result:ty = $function:path;)*) => {
+        $(
+            #[inline(always)]
+            fn $method(self $(, $other: Self)*) -> $result {
+                $function(self $(, $other)*)
+            }
+        )*
+    };
+}
+pub(super) use delegate;
+
 mod double;
 mod single;
 mod vector;
@@ -21,7 +34,6 @@ mod vector;
 pub use double::Double;
 pub use single::Single;
 
-/// Most lanes of a packet.
 pub const WIDEST: usize = 32;
 
 /// The scalar stored in one lane, as arrays keep it.
@@ -43,24 +55,19 @@ pub trait Scalar:
     type Packet<S: Simd>: Lanes<Scalar = Self>;
     /// One of it as lanes.
     type One: Lanes<Scalar = Self>;
-    /// The token of one.
     const ONE: Self::One;
-    /// The token of packets.
     fn packet<S: Simd>(simd: S) -> Self::Packet<S>;
-    /// The nearest value of this type.
     fn from_f64(x: f64) -> Self;
-    /// Exact widening.
     fn to_f64(self) -> f64;
     /// `self · a + b`, rounded once.
     fn fused(self, a: Self, b: Self) -> Self;
-    /// Square root, correctly rounded.
     fn root(self) -> Self;
     /// The larger; the other operand where one is NaN.
     fn larger(self, other: Self) -> Self;
 }
 
 macro_rules! scalar {
-    ($scalar:ty, $roundoff:expr, $packet:ident, $one:ident) => {
+    ($scalar:ident, $roundoff:expr, $packet:ident, $one:ident) => {
         impl Scalar for $scalar {
             const ROUNDOFF: f64 = $roundoff;
             type Packet<S: Simd> = $packet<S>;
@@ -74,17 +81,10 @@ macro_rules! scalar {
             fn from_f64(x: f64) -> Self {
                 x as $scalar
             }
-            #[inline(always)]
-            fn to_f64(self) -> f64 {
-                self.into()
-            }
-            #[inline(always)]
-            fn fused(self, a: Self, b: Self) -> Self {
-                self.mul_add(a, b)
-            }
-            #[inline(always)]
-            fn root(self) -> Self {
-                self.sqrt()
+            delegate! {
+                fn to_f64(self) -> f64 = f64::from;
+                fn fused(self, a, b) -> Self = $scalar::mul_add;
+                fn root(self) -> Self = $scalar::sqrt;
             }
             #[inline(always)]
             fn larger(self, other: Self) -> Self {
@@ -101,9 +101,7 @@ scalar!(f64, 1.0 / 9_007_199_254_740_992.0, Double, One);
 pub trait Mask:
     Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> + 'static
 {
-    /// Number of lanes.
     const COUNT: u32;
-    /// Whether any lane is true.
     fn any(self) -> bool;
     /// Lane `i` in bit `i`.
     fn bits(self) -> u32;
@@ -119,19 +117,15 @@ pub trait Real:
     + Neg<Output = Self>
     + 'static
 {
-    /// Truth values of comparisons.
     type Mask: Mask;
     /// `self · a + b`, rounded once.
     fn mul_add(self, a: Self, b: Self) -> Self;
-    /// Square root, correctly rounded.
     fn sqrt(self) -> Self;
-    /// Absolute value.
     fn abs(self) -> Self;
     /// `self < other ? self : other`: the smaller; `other` where they are equal or one is NaN.
     fn min(self, other: Self) -> Self;
     /// `self > other ? self : other`: the larger; `other` where they are equal or one is NaN.
     fn max(self, other: Self) -> Self;
-    /// Largest integer not above.
     fn floor(self) -> Self;
     /// Nearest integer, ties to even.
     fn round(self) -> Self;
@@ -139,13 +133,9 @@ pub trait Real:
     fn copysign(self, sign: Self) -> Self;
     /// `self < other`; false for NaN, as all comparisons.
     fn lt(self, other: Self) -> Self::Mask;
-    /// `self ≤ other`.
     fn le(self, other: Self) -> Self::Mask;
-    /// `self > other`.
     fn gt(self, other: Self) -> Self::Mask;
-    /// `self ≥ other`.
     fn ge(self, other: Self) -> Self::Mask;
-    /// `self = other`.
     fn same(self, other: Self) -> Self::Mask;
 }
 
@@ -153,17 +143,12 @@ pub trait Real:
 pub trait Int:
     Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> + 'static
 {
-    /// Truth values of comparisons.
     type Mask: Mask;
-    /// Sum modulo 2³².
     fn plus(self, other: Self) -> Self;
-    /// Difference modulo 2³².
     fn minus(self, other: Self) -> Self;
-    /// Product modulo 2³².
     fn times(self, other: Self) -> Self;
     /// Shift left by a constant, dropping what leaves 32 bits.
     fn left(self, by: u32) -> Self;
-    /// Shift right by a constant.
     fn right(self, by: u32) -> Self;
     /// The 32 bits in reverse order.
     fn reversed(self) -> Self;
@@ -174,34 +159,25 @@ pub trait Int:
 
 /// A width and precision of lanes on some instruction set, as a token that makes values.
 pub trait Lanes: Copy + Send + Sync + 'static {
-    /// Scalars in arrays.
     type Scalar: Scalar;
     type Real: Real<Mask = Self::Mask>;
-    /// Unsigned integers.
     type Int: Int<Mask = Self::Mask>;
     /// As many lanes as one packet has, where these are several packets.
     type Narrow: Lanes<Scalar = Self::Scalar>;
-    /// Truth values.
     type Mask: Mask;
-    /// Number of lanes.
     const COUNT: usize;
     /// Bits of a uniform variate that the significand holds.
     const UNIFORM_BITS: u32;
 
-    /// The instruction set.
     fn instructions(self) -> Instructions;
-    /// The token of one packet.
     fn narrow(self) -> Self::Narrow;
     /// Runs `f` compiled for this instruction set; wrapped in a function that is not inlined, the
     /// boundary of a stage.
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R;
     /// The same value, rounded to this precision, in every lane.
     fn real(self, x: f64) -> Self::Real;
-    /// The same scalar in every lane.
     fn splat(self, x: Self::Scalar) -> Self::Real;
-    /// The same integer in every lane.
     fn int(self, x: u32) -> Self::Int;
-    /// The same truth value in every lane.
     fn mask(self, x: bool) -> Self::Mask;
     /// Lane `i` true where bit `i` is set.
     fn mask_from_bits(self, bits: u32) -> Self::Mask;
@@ -215,14 +191,10 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn store_int(self, x: Self::Int, to: &mut [u32]);
     /// `table[index]` lane by lane, for indices below 16.
     fn lookup(self, table: &[Self::Scalar; SMALL], index: Self::Int) -> Self::Real;
-    /// The same in a table of integers.
     fn lookup_int(self, table: &[u32; SMALL], index: Self::Int) -> Self::Int;
     fn lane(self, x: Self::Real, i: usize) -> Self::Scalar;
-    /// One lane of an integer.
     fn int_lane(self, x: Self::Int, i: usize) -> u32;
-    /// With one lane replaced.
     fn with_lane(self, x: Self::Real, i: usize, value: Self::Scalar) -> Self::Real;
-    /// With one lane replaced.
     fn with_int_lane(self, x: Self::Int, i: usize, value: u32) -> Self::Int;
     /// Lane by lane `a` where the mask is true, else `b`.
     fn select(self, m: Self::Mask, a: Self::Real, b: Self::Real) -> Self::Real;
@@ -239,7 +211,6 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     /// Stores the true lanes, in order, into the first of `COUNT` places; what the other places
     /// get is unspecified.
     fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [Self::Scalar]);
-    /// The same of integers.
     fn compress_int_into(self, x: Self::Int, keep: Self::Mask, to: &mut [u32]);
 
     /// Uniform variate in [0, 1) from 32 random bits, rounded *down* so that 1 cannot occur.
@@ -250,8 +221,7 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     }
 }
 
-/// Gives a closure back. An attribute may stand on an argument but not on the right of `let`, and
-/// a closure over lanes must be inlined to be compiled for the instruction set of its caller.
+/// Gives a closure back: for the macro of the same name.
 #[inline(always)]
 pub fn inlined<F>(f: F) -> F {
     f

@@ -13,15 +13,9 @@ use super::exact::Exact;
 pub trait Number: Clone {
     /// x · 2^exponent, for finite x and |exponent| ≤ 1000.
     fn scaled(x: f64, exponent: i32) -> Self;
-    /// The enclosure of an exact number.
     fn enclosing(x: &Exact) -> Self;
-    /// self + other.
     fn plus(&self, other: &Self) -> Self;
-    /// self − other.
-    fn minus(&self, other: &Self) -> Self;
-    /// self · other.
     fn times(&self, other: &Self) -> Self;
-    /// −self.
     fn negated(&self) -> Self;
     /// Sign of the true value: `Equal` is zero, `None` is undecided.
     fn sign(&self) -> Option<Ordering>;
@@ -35,15 +29,16 @@ pub trait Number: Clone {
     /// Bound of |value − truth|; infinite or NaN where nothing is known.
     fn error(&self) -> f64;
 
-    /// The number x itself.
     fn of(x: f64) -> Self {
         Self::scaled(x, 0)
     }
-    /// self².
+    #[inline]
+    fn minus(&self, other: &Self) -> Self {
+        self.plus(&other.negated())
+    }
     fn squared(&self) -> Self {
         self.times(self)
     }
-    /// −self where `negative`, else self.
     fn negated_if(&self, negative: bool) -> Self {
         if negative {
             self.negated()
@@ -110,16 +105,8 @@ impl Bounded {
 impl Number for Bounded {
     #[inline]
     fn scaled(x: f64, exponent: i32) -> Self {
-        let value = x * power_of_two(exponent);
-        let exact = exponent == 0 || x == 0.0 || value.abs() >= f64::MIN_POSITIVE;
-        Self {
-            value,
-            error: match (value.is_finite(), exact) {
-                (false, _) => f64::INFINITY,
-                (true, true) => 0.0,
-                (true, false) => ROUNDING * SMALL,
-            },
-        }
+        let (value, error) = scaled(x, exponent, ROUNDING * SMALL);
+        Self { value, error }
     }
 
     fn enclosing(x: &Exact) -> Self {
@@ -142,11 +129,6 @@ impl Number for Bounded {
             value,
             error: INFLATION * (self.error + other.error + ROUNDING * value.abs()),
         }
-    }
-
-    #[inline]
-    fn minus(&self, other: &Self) -> Self {
-        self.plus(&other.negated())
     }
 
     #[inline]
@@ -219,6 +201,19 @@ impl Number for Bounded {
     fn error(&self) -> f64 {
         self.error
     }
+}
+
+/// x · 2^exponent and a bound of its error, `subnormal` where it has lost digits.
+#[inline]
+pub(super) fn scaled(x: f64, exponent: i32, subnormal: f64) -> (f64, f64) {
+    let value = x * power_of_two(exponent);
+    let exact = exponent == 0 || x == 0.0 || value.abs() >= f64::MIN_POSITIVE;
+    let error = match (value.is_finite(), exact) {
+        (false, _) => f64::INFINITY,
+        (true, true) => 0.0,
+        (true, false) => subnormal,
+    };
+    (value, error)
 }
 
 /// The larger of the two, but NaN where x is NaN (`f64::max` would hide it).

@@ -5,17 +5,14 @@ use super::lanes::{Lanes, WIDEST};
 /// The numbers of the true lanes, in order.
 #[inline(always)]
 pub fn each(mut bits: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(
-        #[inline(always)]
-        move || {
-            if bits == 0 {
-                return None;
-            }
-            let i = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            Some(i)
-        },
-    )
+    std::iter::from_fn(inlined!(move || {
+        if bits == 0 {
+            return None;
+        }
+        let i = bits.trailing_zeros() as usize;
+        bits &= bits - 1;
+        Some(i)
+    }))
 }
 
 /// A packet of reals as an array; unused places are zero.

@@ -2,14 +2,12 @@
 //! that each lane of a packet would have, in instructions that every machine has.
 
 use super::instructions::Instructions;
-use super::lanes::{Int, Lanes, Mask, Real};
+use super::lanes::{Int, Lanes, Mask, Real, delegate};
 use super::lookup::SMALL;
 
-/// One f32.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OneSingle;
 
-/// One f64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct One;
 
@@ -27,17 +25,11 @@ impl Mask for bool {
 
 impl Int for u32 {
     type Mask = bool;
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        self.wrapping_add(other)
-    }
-    #[inline(always)]
-    fn minus(self, other: Self) -> Self {
-        self.wrapping_sub(other)
-    }
-    #[inline(always)]
-    fn times(self, other: Self) -> Self {
-        self.wrapping_mul(other)
+    delegate! {
+        fn plus(self, other) -> Self = u32::wrapping_add;
+        fn minus(self, other) -> Self = u32::wrapping_sub;
+        fn times(self, other) -> Self = u32::wrapping_mul;
+        fn reversed(self) -> Self = u32::reverse_bits;
     }
     #[inline(always)]
     fn left(self, by: u32) -> Self {
@@ -46,10 +38,6 @@ impl Int for u32 {
     #[inline(always)]
     fn right(self, by: u32) -> Self {
         self >> by
-    }
-    #[inline(always)]
-    fn reversed(self) -> Self {
-        self.reverse_bits()
     }
     #[inline(always)]
     fn same(self, other: Self) -> bool {
@@ -65,17 +53,13 @@ macro_rules! one {
     ($one:ident, $scalar:ident, uniform: $uniform:literal) => {
         impl Real for $scalar {
             type Mask = bool;
-            #[inline(always)]
-            fn mul_add(self, a: Self, b: Self) -> Self {
-                $scalar::mul_add(self, a, b)
-            }
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                $scalar::sqrt(self)
-            }
-            #[inline(always)]
-            fn abs(self) -> Self {
-                $scalar::abs(self)
+            delegate! {
+                fn mul_add(self, a, b) -> Self = $scalar::mul_add;
+                fn sqrt(self) -> Self = $scalar::sqrt;
+                fn abs(self) -> Self = $scalar::abs;
+                fn floor(self) -> Self = $scalar::floor;
+                fn round(self) -> Self = $scalar::round_ties_even;
+                fn copysign(self, sign) -> Self = $scalar::copysign;
             }
             #[inline(always)]
             fn min(self, other: Self) -> Self {
@@ -84,18 +68,6 @@ macro_rules! one {
             #[inline(always)]
             fn max(self, other: Self) -> Self {
                 if self > other { self } else { other }
-            }
-            #[inline(always)]
-            fn floor(self) -> Self {
-                $scalar::floor(self)
-            }
-            #[inline(always)]
-            fn round(self) -> Self {
-                self.round_ties_even()
-            }
-            #[inline(always)]
-            fn copysign(self, sign: Self) -> Self {
-                $scalar::copysign(self, sign)
             }
             #[inline(always)]
             fn lt(self, other: Self) -> bool {

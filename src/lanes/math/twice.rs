@@ -120,6 +120,31 @@ impl<I: Int> Int for Pair<I> {
     }
 }
 
+/// Methods that give both packets the same.
+macro_rules! alike {
+    ($(fn $method:ident(x: $type:ty) -> $result:ident;)*) => {
+        $(
+            #[inline(always)]
+            fn $method(self, x: $type) -> Self::$result {
+                let x = self.0.$method(x);
+                Pair(x, x)
+            }
+        )*
+    };
+}
+
+/// Methods that are done to one packet after the other.
+macro_rules! each {
+    ($(fn $method:ident($($x:ident: $type:ident),*) -> $result:ident;)*) => {
+        $(
+            #[inline(always)]
+            fn $method(self $(, $x: Self::$type)*) -> Self::$result {
+                Pair(self.0.$method($($x.0),*), self.0.$method($($x.1),*))
+            }
+        )*
+    };
+}
+
 impl<L: Lanes> Lanes for Twice<L> {
     type Scalar = L::Scalar;
     type Real = Pair<L::Real>;
@@ -141,25 +166,11 @@ impl<L: Lanes> Lanes for Twice<L> {
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
         self.0.vectorize(f)
     }
-    #[inline(always)]
-    fn real(self, x: f64) -> Self::Real {
-        let x = self.0.real(x);
-        Pair(x, x)
-    }
-    #[inline(always)]
-    fn splat(self, x: Self::Scalar) -> Self::Real {
-        let x = self.0.splat(x);
-        Pair(x, x)
-    }
-    #[inline(always)]
-    fn int(self, x: u32) -> Self::Int {
-        let x = self.0.int(x);
-        Pair(x, x)
-    }
-    #[inline(always)]
-    fn mask(self, x: bool) -> Self::Mask {
-        let x = self.0.mask(x);
-        Pair(x, x)
+    alike! {
+        fn real(x: f64) -> Real;
+        fn splat(x: Self::Scalar) -> Real;
+        fn int(x: u32) -> Int;
+        fn mask(x: bool) -> Mask;
     }
     #[inline(always)]
     fn mask_from_bits(self, bits: u32) -> Self::Mask {
@@ -229,33 +240,17 @@ impl<L: Lanes> Lanes for Twice<L> {
             Pair(x.0, self.0.with_int_lane(x.1, i - L::COUNT, value))
         }
     }
-    #[inline(always)]
-    fn select(self, m: Self::Mask, a: Self::Real, b: Self::Real) -> Self::Real {
-        Pair(self.0.select(m.0, a.0, b.0), self.0.select(m.1, a.1, b.1))
-    }
-    #[inline(always)]
-    fn select_int(self, m: Self::Mask, a: Self::Int, b: Self::Int) -> Self::Int {
-        Pair(
-            self.0.select_int(m.0, a.0, b.0),
-            self.0.select_int(m.1, a.1, b.1),
-        )
-    }
-    #[inline(always)]
-    fn truncate(self, x: Self::Real) -> Self::Int {
-        Pair(self.0.truncate(x.0), self.0.truncate(x.1))
-    }
-    #[inline(always)]
-    fn to_real(self, x: Self::Int) -> Self::Real {
-        Pair(self.0.to_real(x.0), self.0.to_real(x.1))
+    each! {
+        fn select(m: Mask, a: Real, b: Real) -> Real;
+        fn select_int(m: Mask, a: Int, b: Int) -> Int;
+        fn truncate(x: Real) -> Int;
+        fn to_real(x: Int) -> Real;
+        fn power_of_two(e: Real) -> Real;
     }
     #[inline(always)]
     fn split_exponent(self, x: Self::Real) -> (Self::Real, Self::Real) {
         let (low, high) = (self.0.split_exponent(x.0), self.0.split_exponent(x.1));
         (Pair(low.0, high.0), Pair(low.1, high.1))
-    }
-    #[inline(always)]
-    fn power_of_two(self, e: Self::Real) -> Self::Real {
-        Pair(self.0.power_of_two(e.0), self.0.power_of_two(e.1))
     }
     #[inline(always)]
     fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [Self::Scalar]) {

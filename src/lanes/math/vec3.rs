@@ -4,21 +4,16 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use glam::DVec3;
 
-use super::lanes::{Lanes, Real, inlined};
+use super::lanes::{Lanes, Real};
 
-/// Three reals a lane.
 #[derive(Clone, Copy)]
 pub struct Vec3<R> {
-    /// First component.
     pub x: R,
-    /// Second component.
     pub y: R,
-    /// Third component.
     pub z: R,
 }
 
 impl<R: Real> Vec3<R> {
-    /// From components.
     #[inline(always)]
     pub fn new(x: R, y: R, z: R) -> Self {
         Self { x, y, z }
@@ -30,7 +25,6 @@ impl<R: Real> Vec3<R> {
         Self::new(l.real(v.x), l.real(v.y), l.real(v.z))
     }
 
-    /// Inner product.
     #[inline(always)]
     pub fn dot(self, b: Self) -> R {
         self.x.mul_add(b.x, self.y.mul_add(b.y, self.z * b.z))
@@ -41,7 +35,6 @@ impl<R: Real> Vec3<R> {
         self.dot(self)
     }
 
-    /// Cross product.
     #[inline(always)]
     pub fn cross(self, b: Self) -> Self {
         Self::new(
@@ -51,7 +44,6 @@ impl<R: Real> Vec3<R> {
         )
     }
 
-    /// Every component times a scalar.
     #[inline(always)]
     pub fn scale(self, s: R) -> Self {
         Self::new(self.x * s, self.y * s, self.z * s)
@@ -67,20 +59,17 @@ impl<R: Real> Vec3<R> {
         )
     }
 
-    /// Unit vector of the same direction.
     #[inline(always)]
     pub fn normalized<L: Lanes<Real = R>>(self, l: L) -> Self {
         self.scale(l.real(1.0) / self.length_squared().sqrt())
     }
 
-    /// 1 over each component.
     #[inline(always)]
     pub fn reciprocal<L: Lanes<Real = R>>(self, l: L) -> Self {
         let one = l.real(1.0);
         Self::new(one / self.x, one / self.y, one / self.z)
     }
 
-    /// Largest magnitude of a component.
     #[inline(always)]
     pub fn max_abs(self) -> R {
         self.x.abs().max(self.y.abs()).max(self.z.abs())
@@ -114,29 +103,25 @@ impl<R: Real> Vec3<R> {
     }
 }
 
-impl<R: Real> Add for Vec3<R> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        Self::new(self.x + b.x, self.y + b.y, self.z + b.z)
-    }
+macro_rules! operator {
+    ($trait:ident, $method:ident) => {
+        impl<R: Real> $trait for Vec3<R> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, b: Self) -> Self {
+                Self::new(
+                    self.x.$method(b.x),
+                    self.y.$method(b.y),
+                    self.z.$method(b.z),
+                )
+            }
+        }
+    };
 }
 
-impl<R: Real> Sub for Vec3<R> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, b: Self) -> Self {
-        Self::new(self.x - b.x, self.y - b.y, self.z - b.z)
-    }
-}
-
-impl<R: Real> Mul for Vec3<R> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, b: Self) -> Self {
-        Self::new(self.x * b.x, self.y * b.y, self.z * b.z)
-    }
-}
+operator!(Add, add);
+operator!(Sub, sub);
+operator!(Mul, mul);
 
 impl<R: Real> Neg for Vec3<R> {
     type Output = Self;
@@ -149,7 +134,6 @@ impl<R: Real> Neg for Vec3<R> {
 /// An affine map whose rows are scalars, applied to lanes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rows<T> {
-    /// Rows of the 3×4 matrix.
     pub rows: [[T; 4]; 3],
     /// The only coordinate that each row depends on; [`SEVERAL`] where there is more than one.
     only: [u8; 3],
@@ -170,7 +154,6 @@ fn only(row: &[f64; 4]) -> u8 {
 }
 
 impl<T: super::lanes::Scalar> Rows<T> {
-    /// Rounds a 3×4 matrix of f64.
     pub fn from_f64(rows: &[[f64; 4]; 3]) -> Self {
         Self {
             rows: rows.map(|row| row.map(T::from_f64)),
@@ -188,13 +171,10 @@ impl<T: super::lanes::Scalar> Rows<T> {
         v: Vec3<L::Real>,
     ) -> (L::Real, L::Real) {
         let r = &self.rows[i];
-        let along = inlined(
-            #[inline(always)]
-            |j: usize, p: L::Real, v: L::Real| {
-                let scale = l.splat(r[j]);
-                (scale.mul_add(p, l.splat(r[3])), scale * v)
-            },
-        );
+        let along = inlined!(|j: usize, p: L::Real, v: L::Real| {
+            let scale = l.splat(r[j]);
+            (scale.mul_add(p, l.splat(r[3])), scale * v)
+        });
         match self.only[i] {
             0 => along(0, p.x, v.x),
             1 => along(1, p.y, v.y),
@@ -203,7 +183,6 @@ impl<T: super::lanes::Scalar> Rows<T> {
         }
     }
 
-    /// Linear part of row `i` times a vector.
     #[inline(always)]
     pub fn row_dot<L: Lanes<Scalar = T>>(&self, l: L, i: usize, v: Vec3<L::Real>) -> L::Real {
         let r = &self.rows[i];
@@ -211,7 +190,6 @@ impl<T: super::lanes::Scalar> Rows<T> {
             .mul_add(v.x, l.splat(r[1]).mul_add(v.y, l.splat(r[2]) * v.z))
     }
 
-    /// Row `i` of the image of a point.
     #[inline(always)]
     pub fn row_point<L: Lanes<Scalar = T>>(&self, l: L, i: usize, p: Vec3<L::Real>) -> L::Real {
         let r = &self.rows[i];
@@ -222,7 +200,6 @@ impl<T: super::lanes::Scalar> Rows<T> {
         )
     }
 
-    /// Image of a point.
     #[inline(always)]
     pub fn point<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> Vec3<L::Real> {
         Vec3::new(
@@ -232,7 +209,6 @@ impl<T: super::lanes::Scalar> Rows<T> {
         )
     }
 
-    /// Image of a vector.
     #[inline(always)]
     pub fn vector<L: Lanes<Scalar = T>>(&self, l: L, v: Vec3<L::Real>) -> Vec3<L::Real> {
         Vec3::new(
@@ -245,16 +221,13 @@ impl<T: super::lanes::Scalar> Rows<T> {
     /// Transpose of the linear part times a vector: normals, when these rows are the inverse.
     #[inline(always)]
     pub fn transposed<L: Lanes<Scalar = T>>(&self, l: L, v: Vec3<L::Real>) -> Vec3<L::Real> {
-        let column = inlined(
-            #[inline(always)]
-            |j: usize| {
-                l.splat(self.rows[0][j]).mul_add(
-                    v.x,
-                    l.splat(self.rows[1][j])
-                        .mul_add(v.y, l.splat(self.rows[2][j]) * v.z),
-                )
-            },
-        );
+        let column = inlined!(|j: usize| {
+            l.splat(self.rows[0][j]).mul_add(
+                v.x,
+                l.splat(self.rows[1][j])
+                    .mul_add(v.y, l.splat(self.rows[2][j]) * v.z),
+            )
+        });
         Vec3::new(column(0), column(1), column(2))
     }
 }

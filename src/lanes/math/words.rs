@@ -7,37 +7,27 @@ use super::lanes::{Lanes, Real};
 #[repr(align(64))]
 pub struct Row(pub [f64; 8]);
 
-/// A number of one or two f64 a lane.
 pub trait Word<L: Lanes<Scalar = f64>>: Copy {
     /// How many rows it takes.
     const ROWS: usize;
     /// Error of a sum or product, relative to the sum or product of the operands' magnitudes.
     const UNIT: f64;
-    /// From f64.
     fn real(l: L, x: L::Real) -> Self;
     /// The same constant, given as a sum, in every lane.
     fn constant(l: L, parts: [f64; 2]) -> Self;
-    /// self + other.
     fn plus(self, other: Self) -> Self;
-    /// self − other.
     fn minus(self, other: Self) -> Self;
-    /// self · other.
     fn times(self, other: Self) -> Self;
-    /// self · x.
     fn times_real(self, x: L::Real) -> Self;
-    /// self · a + b.
     fn fused(self, a: Self, b: Self) -> Self;
     /// The nearest f64.
     fn head(self) -> L::Real;
     /// self where the mask is true, else other.
     fn select(l: L, mask: L::Mask, a: Self, b: Self) -> Self;
-    /// The `i`th number of the rows.
     fn load(l: L, rows: &[Row], i: usize) -> Self;
-    /// Puts the number in the `i`th place.
     fn store(self, l: L, rows: &mut [Row], i: usize);
 }
 
-/// One f64.
 #[derive(Clone, Copy)]
 pub struct Plain<L: Lanes>(pub L::Real);
 
@@ -111,7 +101,6 @@ impl<L: Lanes<Scalar = f64>> Pair<L> {
         Self { high, low }
     }
 
-    /// The low word.
     #[inline(always)]
     pub fn tail(self) -> L::Real {
         self.low

@@ -26,12 +26,8 @@ const MOST_SPLITS: usize = 32;
 /// Steps of Newton's method, which doubles the digits in each, or halvings where it does not.
 const MOST_STEPS: usize = 24;
 
-/// Polynomials of degree below M.
-pub struct Problem<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize> {
-    /// Bernstein coefficients.
-    pub coefficients: [W; M],
-    /// How many there are: one more than the degree.
-    pub count: usize,
+/// What is known of polynomials besides their coefficients.
+pub struct Question<L: Lanes> {
     /// Bound of the coefficients' error.
     pub error: L::Real,
     /// Polynomials whose value at 0 is a root already known, up to `start_error`: it does not
@@ -43,20 +39,16 @@ pub struct Problem<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize> {
     pub roots_at_end: usize,
     /// Part of the solver's own rounding that is accounted for: 1.
     pub accounted: f64,
-    /// Those that are asked for.
     pub active: L::Mask,
 }
 
 /// What is known of the first roots.
 #[derive(Clone, Copy)]
 pub struct Roots<L: Lanes> {
-    /// There is one.
     pub found: L::Mask,
-    /// There is none.
     pub absent: L::Mask,
     /// The polynomial is negative before the root, or everywhere.
     pub negative: L::Mask,
-    /// Estimate of the root.
     pub root: L::Real,
     /// It is not before this.
     pub low: L::Real,
@@ -66,7 +58,6 @@ pub struct Roots<L: Lanes> {
     pub doubt: L::Real,
 }
 
-/// Signs of a row of coefficients.
 struct Signs<L: Lanes> {
     /// All certainly positive.
     positive: L::Mask,
@@ -197,38 +188,39 @@ fn turned<L: Lanes<Scalar = f64>, W: Word<L>>(
     largest
 }
 
-/// The first roots in (0, 1).
+/// The first roots in (0, 1) of polynomials with the first `count` of these Bernstein coefficients.
 #[inline(always)]
 pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
     l: L,
-    problem: &Problem<L, W, M>,
+    given: &[W; M],
+    count: usize,
+    question: &Question<L>,
 ) -> Roots<L> {
     let (zero, one) = (l.real(0.0), l.real(1.0));
     let nobody = l.mask(false);
-    let count = problem.count;
-    let mut coefficients = problem.coefficients;
+    let mut coefficients = *given;
     let rest = &mut coefficients[..count];
     // Turned so that they are positive at first; a start on a root has the sign that follows it.
     let start = rest[0].head();
-    let mut known = problem.on_root & !start.abs().gt(problem.start_error);
+    let mut known = question.on_root & !start.abs().gt(question.start_error);
     let negative = l.select(known, rest[1].head(), start).lt(zero);
     let sign = l.select(negative, -one, one);
-    let counted = count - problem.roots_at_end.min(count - 1);
+    let counted = count - question.roots_at_end.min(count - 1);
     let largest = turned(l, rest, counted, sign);
     // One split's worth pays for `value`, too.
-    let own = split_error(count - 1, W::UNIT) * problem.accounted;
+    let own = split_error(count - 1, W::UNIT) * question.accounted;
     let per_split = largest * l.real(own);
-    let mut error = problem.error + per_split;
-    let (mut before, mut after) = (problem.coefficients, problem.coefficients);
+    let mut error = question.error + per_split;
+    let (mut before, mut after) = (*given, *given);
     let mut segment = Segment {
-        coefficients: problem.coefficients,
+        coefficients: *given,
         from: zero,
         width: one,
     };
     let (mut from, mut at) = (zero, one);
     // A start whose sign is unknown stays so in every first part.
     let (mut found, mut absent, mut given_up) = (nobody, nobody, !known & !start.abs().gt(error));
-    let mut fresh = problem.active & !given_up;
+    let mut fresh = question.active & !given_up;
     let (mut doubt, mut part) = (one, one);
     for _ in 0..MOST_SPLITS * W::ROWS {
         let s = signs(l, &rest[..counted], error, known);
@@ -239,7 +231,7 @@ pub fn first_roots<L: Lanes<Scalar = f64>, W: Word<L>, const M: usize>(
         }
         absent = absent | (fresh & s.positive);
         given_up = given_up | (fresh & s.touching);
-        let open = problem.active & !found & !absent & !given_up;
+        let open = question.active & !found & !absent & !given_up;
         if !open.any() {
             break;
         }

@@ -1,6 +1,6 @@
 //! Where the search for the next zero begins on a ray that leaves a surface.
 
-use super::interval::{Enclosed, PIECES};
+use super::interval::{Enclosed, PIECES, sign};
 
 /// The ray starts at a zero, whose place is known up to rounding.
 ///
@@ -24,8 +24,7 @@ pub fn departure<B: Enclosed, S: Enclosed>(blurred: &mut B, sharp: &mut S, to: f
             if pieces.broken >> i & 1 == 1 {
                 continue;
             }
-            let sign =
-                |[low, high]: [[f64; PIECES]; 2]| i8::from(low[i] > 0.0) - i8::from(high[i] < 0.0);
+            let sign = |bounds: [[f64; PIECES]; 2]| sign(bounds.map(|bound| bound[i]));
             if sign(pieces.value) != 0 {
                 return Some(0.0);
             }

@@ -12,7 +12,6 @@ use num_traits::{One, Signed, Zero};
 use crate::math::exact::Exact;
 use crate::math::number::Number;
 
-/// A rational point on the line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
     pub numerator: BigInt,
@@ -26,7 +25,6 @@ impl Point {
         Self::dyadic(&Exact::of(x))
     }
 
-    /// A dyadic number.
     pub fn dyadic(x: &Exact) -> Self {
         let (mantissa, exponent) = x.parts();
         let shift = exponent.unsigned_abs();
@@ -43,7 +41,6 @@ impl Point {
         }
     }
 
-    /// Exact order.
     pub fn compare(&self, other: &Self) -> Ordering {
         (&self.numerator * &other.denominator).cmp(&(&other.numerator * &self.denominator))
     }
@@ -74,19 +71,15 @@ impl Point {
     }
 }
 
-/// Where roots count.
+/// Where roots count: between the ends, and at those ends that count.
 #[derive(Debug, Clone)]
 pub struct Stretch {
-    /// The beginning.
     pub low: Point,
-    /// Whether a root there counts.
     pub low_counts: bool,
     pub high: Point,
-    /// Whether a root there counts.
     pub high_counts: bool,
 }
 
-/// A first root.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExactRoot {
     /// The nearest f64 or a neighbour.
@@ -209,7 +202,6 @@ impl Polynomial {
     }
 }
 
-/// A Sturm chain.
 pub(super) struct Chain(Vec<Polynomial>);
 
 impl Chain {
@@ -267,7 +259,6 @@ impl Chain {
 /// A polynomial whose roots are all simple, and what was divided out.
 pub(super) struct SquareFree {
     pub simple: Polynomial,
-    /// Its Sturm chain.
     pub chain: Chain,
     /// The divisor: every root of the original as often as it was one, less one.
     pub common: Polynomial,

@@ -19,7 +19,6 @@ pub const PIECES: usize = 8;
 pub struct Pieces {
     /// Lower and upper bounds of the values.
     pub value: [[f64; PIECES]; 2],
-    /// Lower and upper bounds of the slopes.
     pub slope: [[f64; PIECES]; 2],
     /// Bit i: piece i may hold points where the function jumps or is undefined.
     pub broken: u32,
@@ -43,17 +42,24 @@ pub trait Enclosed {
 /// A finder's answer, and what it cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Search {
-    /// What was found.
     pub outcome: Outcome,
     /// How many times eight enclosures were asked for.
     pub evaluations: u32,
+}
+
+impl Search {
+    pub fn new(outcome: Outcome, evaluations: u32) -> Self {
+        Self {
+            outcome,
+            evaluations,
+        }
+    }
 }
 
 /// Where a stretch is cut. Uneven, so that the zeros of symmetric surfaces seen along their axes
 /// do not lie on the cuts; any increasing numbers between 0 and 1 are right.
 const CUTS: [f64; PIECES - 1] = [0.1193, 0.2476, 0.3731, 0.4957, 0.6218, 0.7471, 0.8762];
 
-/// A point with its values' bounds.
 #[derive(Debug, Clone, Copy)]
 struct End {
     t: f64,
@@ -61,13 +67,13 @@ struct End {
 }
 
 impl End {
-    /// −1 or 1 where it is proved, else 0.
     fn sign(&self) -> i8 {
         sign(self.value)
     }
 }
 
-fn sign([low, high]: [f64; 2]) -> i8 {
+/// −1 or 1 where bounds of a value prove it, else 0.
+pub(super) fn sign([low, high]: [f64; 2]) -> i8 {
     i8::from(low > 0.0) - i8::from(high < 0.0)
 }
 
@@ -106,10 +112,7 @@ pub fn first_zero<F: Enclosed>(function: &mut F, [from, to]: [f64; 2], bound: u3
     } else {
         Outcome::Undecided
     };
-    Search {
-        outcome,
-        evaluations: state.evaluations,
-    }
+    Search::new(outcome, state.evaluations)
 }
 
 struct State<'a, F> {

@@ -24,9 +24,7 @@ pub struct Root {
 /// What a finder knows of the first zero within a stretch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Outcome {
-    /// It is there.
     Found(Root),
-    /// There is none.
     Absent,
     /// The finder's arithmetic or its work bound did not suffice.
     Undecided,

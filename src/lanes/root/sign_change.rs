@@ -5,13 +5,13 @@
 
 use crate::math::lanes::Scalar;
 
-/// The first change of sign of a function in [near, far], in `steps` equal steps; its bracket is
+/// The first change of sign of a function in [near, far], in `steps` equal steps: its bracket,
 /// halved until no number lies between its ends.
 pub fn first_change<T: Scalar>(
     value: impl Fn(T) -> T,
     [near, far]: [T; 2],
     steps: u32,
-) -> Option<T> {
+) -> Option<[T; 2]> {
     let zero = T::default();
     let negative = value(near) < zero;
     let step = (far - near) / T::from_f64(steps.into());
@@ -31,12 +31,12 @@ pub fn first_change<T: Scalar>(
 }
 
 /// The sign is `negative` at `low` and not at `high`.
-fn bisected<T: Scalar>(value: &impl Fn(T) -> T, mut low: T, mut high: T, negative: bool) -> T {
+fn bisected<T: Scalar>(value: &impl Fn(T) -> T, mut low: T, mut high: T, negative: bool) -> [T; 2] {
     let half = T::from_f64(0.5);
     loop {
         let middle = low + (high - low) * half;
         if middle <= low || middle >= high {
-            return middle;
+            return [low, high];
         }
         if (value(middle) < T::default()) == negative {
             low = middle;

@@ -6,7 +6,7 @@
 //! tracing", for steps longer than one ball). The values and the bound are enclosures, so that a
 //! stretch called clear is clear.
 
-use super::interval::{Enclosed, PIECES, Search};
+use super::interval::{Enclosed, PIECES, Search, sign};
 use super::{Outcome, Root};
 
 /// The first zero in [from, to], after at most `bound` evaluations.
@@ -24,11 +24,9 @@ pub fn first_zero<F: Enclosed>(
     lipschitz: f64,
     bound: u32,
 ) -> Search {
-    let width = (to - from) / PIECES as f64;
-    let starts: [f64; PIECES] = std::array::from_fn(|i| from + width * i as f64);
-    let ends: [f64; PIECES] = std::array::from_fn(|i| *starts.get(i + 1).unwrap_or(&to));
+    let [starts, ends] = pieces_of(from, to);
     if !starts.iter().zip(&ends).all(|(a, b)| a < b) {
-        return done(Outcome::Undecided, 0);
+        return Search::new(Outcome::Undecided, 0);
     }
     let pieces = function.over(&starts, &ends);
     let mut evaluations = 1;
@@ -48,10 +46,10 @@ pub fn first_zero<F: Enclosed>(
         );
         evaluations += piece.evaluations;
         if piece.outcome != Outcome::Absent {
-            return done(piece.outcome, evaluations);
+            return Search::new(piece.outcome, evaluations);
         }
     }
-    done(Outcome::Absent, evaluations)
+    Search::new(Outcome::Absent, evaluations)
 }
 
 /// The first zero in a piece over which one Lipschitz bound holds.
@@ -81,7 +79,7 @@ fn within<F: Enclosed>(
         evaluations += 1;
         march.advance(&points, function.at(&points));
         if march.opposite.is_none() && march.clear >= to && march.sign != 0 {
-            return done(Outcome::Absent, evaluations);
+            return Search::new(Outcome::Absent, evaluations);
         }
         let gained = march.clear - before;
         let size = before.abs().max(end.abs());
@@ -89,30 +87,31 @@ fn within<F: Enclosed>(
         let stuck = gained <= 0.0 && step <= resolution;
         match march.opposite {
             Some(end) if end - march.clear <= resolution => {
-                return done(march.found(end), evaluations);
+                return Search::new(march.found(end), evaluations);
             }
             Some(_) if stuck => {
                 let outcome = march.narrowed(function, &mut evaluations, bound);
-                return done(outcome, evaluations);
+                return Search::new(outcome, evaluations);
             }
-            None if stuck => return done(Outcome::Undecided, evaluations),
+            None if stuck => return Search::new(Outcome::Undecided, evaluations),
             _ => {}
         }
         // Points reach twice as far as the last balls did.
         step = (gained * 2.0).max(step / 16.0).min(end - march.clear);
     }
-    done(Outcome::Undecided, evaluations)
+    Search::new(Outcome::Undecided, evaluations)
 }
 
 /// Evaluations after which the bound is proved anew for what is left of the stretch: close to a
 /// zero it then is the slope there, and steps no longer shrink in a fixed proportion.
 const RENEWAL: u32 = 8;
 
-fn done(outcome: Outcome, evaluations: u32) -> Search {
-    Search {
-        outcome,
-        evaluations,
-    }
+/// Where equal pieces of a stretch begin and end.
+fn pieces_of(from: f64, to: f64) -> [[f64; PIECES]; 2] {
+    let width = (to - from) / PIECES as f64;
+    let starts: [f64; PIECES] = std::array::from_fn(|i| from + width * i as f64);
+    let ends = std::array::from_fn(|i| *starts.get(i + 1).unwrap_or(&to));
+    [starts, ends]
 }
 
 /// Points from `clear` on, at distances that double up to `step`, not beyond `end`.
@@ -126,23 +125,18 @@ fn ahead(clear: f64, step: f64, end: f64) -> [f64; PIECES] {
     t
 }
 
-/// What is known of the stretch so far.
 struct March {
     lipschitz: f64,
     /// No zero lies before this.
     clear: f64,
-    /// The sign up to there.
     sign: i8,
     /// A point further on where the function has the other sign.
     opposite: Option<f64>,
 }
 
 impl March {
-    /// Proves a bound for what is left.
     fn renew<F: Enclosed>(&mut self, function: &mut F, end: f64) {
-        let width = (end - self.clear) / PIECES as f64;
-        let starts: [f64; PIECES] = std::array::from_fn(|i| self.clear + width * i as f64);
-        let ends: [f64; PIECES] = std::array::from_fn(|i| *starts.get(i + 1).unwrap_or(&end));
+        let [starts, ends] = pieces_of(self.clear, end);
         if !starts.iter().zip(&ends).all(|(a, b)| a <= b) {
             return;
         }
@@ -156,7 +150,7 @@ impl March {
 
     fn advance(&mut self, points: &[f64; PIECES], [low, high]: [[f64; PIECES]; 2]) {
         for i in 0..PIECES {
-            let (t, sign) = (points[i], i8::from(low[i] > 0.0) - i8::from(high[i] < 0.0));
+            let (t, sign) = (points[i], sign([low[i], high[i]]));
             if sign == 0 {
                 continue;
             }
@@ -199,7 +193,7 @@ impl March {
             let t = std::array::from_fn(|i| self.clear + width * (i as f64 + 1.0) / 9.0);
             let [low, high] = function.at(&t);
             *evaluations += 1;
-            let sign = |i: usize| i8::from(low[i] > 0.0) - i8::from(high[i] < 0.0);
+            let sign = |i: usize| sign([low[i], high[i]]);
             if (0..PIECES).any(|i| sign(i) == self.sign) {
                 return Outcome::Undecided;
             }

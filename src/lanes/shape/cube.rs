@@ -4,10 +4,10 @@ use glam::DVec3;
 
 use super::kind::{Canonical, Emitter, Length, Question};
 use super::lanes::part::{Part, PartKind};
-use super::lanes::{self, Enclosure, LaneRay, LaneShape};
+use super::lanes::{self, LaneRay, LaneShape};
 use super::line::{LocalRay, Span};
 use super::slab::{Along, LaneSlab, Slab, coordinate, cut, lane_slab, reach, slab};
-use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
+use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::number::Number;
 use crate::math::vec3::Vec3;
 
@@ -98,13 +98,10 @@ impl Canonical for Cube {
 /// The three slabs of the lines in local coordinates.
 #[inline(always)]
 fn slabs<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> [LaneSlab<L>; 3] {
-    let axis = inlined(
-        #[inline(always)]
-        |i| {
-            let local = shape.inverse.row(l, i, ray.origin, ray.direction);
-            lane_slab(l, &coordinate(l, shape, ray, i, local))
-        },
-    );
+    let axis = inlined!(|i| {
+        let local = shape.inverse.row(l, i, ray.origin, ray.direction);
+        lane_slab(l, &coordinate(l, shape, ray, i, local))
+    });
     [axis(0), axis(1), axis(2)]
 }
 
@@ -116,24 +113,21 @@ fn with_parallels<L: Lanes>(
     shape: &LaneShape<L::Scalar>,
     ray: &LaneRay<L>,
 ) -> lanes::Span<L> {
-    l.vectorize(
-        #[inline(always)]
-        || {
-            let mut slabs = slabs(l, shape, ray);
-            let o = shape.inverse.point(l, ray.origin);
-            let d = shape.inverse.vector(l, ray.direction);
-            let reach = reach(l, shape, ray, o, d);
-            let (mut lost, mut outside) = (l.mask(false), l.mask(false));
-            let components = [(o.x, d.x), (o.y, d.y), (o.z, d.z)];
-            for (i, (slab, local)) in slabs.iter_mut().zip(components).enumerate() {
-                let coordinate = coordinate(l, shape, ray, i, local);
-                let along: Along<L> = slab.settle(l, &coordinate, reach);
-                lost = lost | along.lost;
-                outside = outside | along.outside;
-            }
-            joined(l, &slabs, lost, outside)
-        },
-    )
+    l.vectorize(inlined!(|| {
+        let mut slabs = slabs(l, shape, ray);
+        let o = shape.inverse.point(l, ray.origin);
+        let d = shape.inverse.vector(l, ray.direction);
+        let reach = reach(l, shape, ray, o, d);
+        let (mut lost, mut outside) = (l.mask(false), l.mask(false));
+        let components = [(o.x, d.x), (o.y, d.y), (o.z, d.z)];
+        for (i, (slab, local)) in slabs.iter_mut().zip(components).enumerate() {
+            let coordinate = coordinate(l, shape, ray, i, local);
+            let along: Along<L> = slab.settle(l, &coordinate, reach);
+            lost = lost | along.lost;
+            outside = outside | along.outside;
+        }
+        joined(l, &slabs, lost, outside)
+    }))
 }
 
 #[inline(always)]
@@ -143,22 +137,13 @@ fn joined<L: Lanes>(
     lost: L::Mask,
     outside: L::Mask,
 ) -> lanes::Span<L> {
-    let near = Enclosure {
-        low: x.near.low.max(y.near.low).max(z.near.low),
-        high: x.near.high.max(y.near.high).max(z.near.high),
-    };
-    let far = Enclosure {
-        low: x.far.low.min(y.far.low).min(z.far.low),
-        high: x.far.high.min(y.far.high).min(z.far.high),
-    };
+    let near = x.near.later(y.near).later(z.near);
+    let far = x.far.earlier(y.far).earlier(z.far);
     // One part a pair of faces.
-    let which = inlined(
-        #[inline(always)]
-        |y_later: L::Mask, z_later: L::Mask| {
-            let x_or_y = l.select_int(y_later, l.int(1), l.int(0));
-            l.select_int(z_later, l.int(2), x_or_y)
-        },
-    );
+    let which = inlined!(|y_later: L::Mask, z_later: L::Mask| {
+        let x_or_y = l.select_int(y_later, l.int(1), l.int(0));
+        l.select_int(z_later, l.int(2), x_or_y)
+    });
     let parts = [
         which(
             y.near.high.gt(x.near.high),

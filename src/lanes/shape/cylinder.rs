@@ -5,10 +5,11 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::kind::{Canonical, Emitter, Length, Question};
-use super::lanes::{self, Enclosure, LaneShape, LaneSurface};
+use super::lanes::{self, LaneShape, LaneSurface};
 use super::line::{Crossing, Fraction, LocalRay, Span};
 use super::slab::{Along, Slab, coordinate, cut, lane_slab, reach, slab};
-use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
+use super::sphere::round_span;
+use crate::math::lanes::{Lanes, Mask, Real};
 use crate::math::number::{Number, dot};
 use crate::math::vec3::Vec3;
 
@@ -58,12 +59,8 @@ impl Canonical for Cylinder {
         let Question {
             shape, ray, asked, ..
         } = *question;
-        let u = <L::Scalar as Scalar>::ROUNDOFF;
         let one = l.real(1.0);
-        let row = inlined(
-            #[inline(always)]
-            |i: usize| shape.inverse.row(l, i, ray.origin, ray.direction),
-        );
+        let row = inlined!(|i: usize| shape.inverse.row(l, i, ray.origin, ray.direction));
         let ((ox, dx), (oy, dy), (oz, dz)) = (row(0), row(1), row(2));
         let (o, d) = (Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
         let (e0, dd) = shape.largest_errors(l, ray, 2);
@@ -74,20 +71,7 @@ impl Canonical for Cylinder {
         let foot_t = -(o.x.mul_add(d.x, o.y * d.y) * inverse_square);
         let (fx, fy) = (d.x.mul_add(foot_t, o.x), d.y.mul_add(foot_t, o.y));
         let squared = fx.mul_add(fx, fy * fy);
-        let c = one - squared;
-        let e = foot_t.abs().mul_add(dd, e0);
-        let q = dd * inverse_length;
-        let relative = (q * q).mul_add(l.real(64.0), e.mul_add(l.real(8.0), l.real(8.0 * u)));
-        let c_error = (e * e).mul_add(l.real(16.0), relative * squared.max(one));
-        let root = c.max(l.real(0.0)).sqrt();
-        let half = root * inverse_length;
-        let along = q.mul_add(l.real(6.0), e * l.real(4.0));
-        let side_error = (c_error / root + along)
-            .mul_add(inverse_length, (foot_t.abs() + half) * l.real(9.0 * u));
-        let mut side_near = Enclosure::<L>::about(foot_t - half, side_error);
-        let mut side_far = Enclosure::<L>::about(foot_t + half, side_error);
-        let mut side_hit = c.gt(c_error);
-        let mut side_miss = c.lt(-c_error);
+        let mut side = round_span(l, foot_t, squared, inverse_length, (e0, dd));
         // Along the axis the relative error of the direction across it is unbounded.
         let parallel = !across.sqrt().gt(dd * l.real(8.0));
         if (parallel & asked).any() {
@@ -96,18 +80,12 @@ impl Canonical for Cylinder {
                 * l.real(1.0 + 1e-6);
             let radius = o.x.mul_add(o.x, o.y * o.y).sqrt();
             let far = l.real(f64::INFINITY);
-            side_near = Enclosure {
-                low: l.select(parallel, -far, side_near.low),
-                high: l.select(parallel, -far, side_near.high),
-            };
-            side_far = Enclosure {
-                low: l.select(parallel, far, side_far.low),
-                high: l.select(parallel, far, side_far.high),
-            };
+            side.near = side.near.replaced(l, parallel, -far);
+            side.far = side.far.replaced(l, parallel, far);
             let inside = (radius + drift).lt(one);
             let outside = (radius - drift).gt(one);
-            side_hit = (side_hit & !parallel) | (parallel & inside);
-            side_miss = (side_miss & !parallel) | (parallel & outside);
+            side.hit = (side.hit & !parallel) | (parallel & inside);
+            side.miss = (side.miss & !parallel) | (parallel & outside);
         }
 
         let height = coordinate(l, shape, ray, 2, (o.z, d.z));
@@ -120,19 +98,13 @@ impl Canonical for Cylinder {
         if (caps.parallel & asked).any() {
             along = caps.settle(l, &height, reach(l, shape, ray, o, d));
         }
-        let near = Enclosure {
-            low: side_near.low.max(caps.near.low),
-            high: side_near.high.max(caps.near.high),
-        };
-        let far = Enclosure {
-            low: side_far.low.min(caps.far.low),
-            high: side_far.high.min(caps.far.high),
-        };
+        let near = side.near.later(caps.near);
+        let far = side.far.earlier(caps.far);
         lanes::Span {
             near,
             far,
-            hit: side_hit & near.high.lt(far.low) & !along.lost & !along.outside,
-            miss: side_miss | along.outside | (side_hit & near.low.gt(far.high) & !along.lost),
+            hit: side.hit & near.high.lt(far.low) & !along.lost & !along.outside,
+            miss: side.miss | along.outside | (side.hit & near.low.gt(far.high) & !along.lost),
             parts: [l.int(0); 2],
         }
     }

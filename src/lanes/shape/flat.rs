@@ -9,7 +9,7 @@ use super::lanes::part::{Part, PartKind};
 use super::lanes::{self, Enclosure, LaneShape};
 use super::line::{Crossing, Feature, Fraction, LocalRay, Span};
 use crate::math::affine::Affine;
-use crate::math::lanes::{Lanes, Real, Scalar, inlined};
+use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::number::Number;
 use crate::math::vec3::Vec3;
 
@@ -88,10 +88,7 @@ impl<F: Flat> Canonical for F {
     fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
         let Question { shape, ray, .. } = *question;
         let u = <L::Scalar as Scalar>::ROUNDOFF;
-        let row = inlined(
-            #[inline(always)]
-            |i: usize| shape.inverse.row(l, i, ray.origin, ray.direction),
-        );
+        let row = inlined!(|i: usize| shape.inverse.row(l, i, ray.origin, ray.direction));
         let ((ox, dx), (oy, dy), (oz, dz)) = (row(0), row(1), row(2));
         let [constant, factor] = shape.margins;
         let margin = ray.extent.mul_add(l.splat(factor), l.splat(constant));

@@ -12,7 +12,7 @@ use glam::DVec3;
 use super::lanes::LaneShape;
 use super::lanes::balls::{Balls, MOST};
 use crate::math::affine::Affine;
-use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
+use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 use split::split;
 
@@ -27,23 +27,18 @@ const HALVED_LEVELS: usize = 11;
 /// Most entries that wait while a ray descends.
 const STACK: usize = (FREE_LEVELS + HALVED_LEVELS) * (WIDTH - 1) + 1;
 
-/// An axis-aligned box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// Lower corner.
     pub low: DVec3,
-    /// Upper corner.
     pub high: DVec3,
 }
 
 impl Bounds {
-    /// The box of nothing.
     const NOTHING: Self = Self {
         low: DVec3::INFINITY,
         high: DVec3::NEG_INFINITY,
     };
 
-    /// The box of both.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self {
@@ -52,7 +47,6 @@ impl Bounds {
         }
     }
 
-    /// The box of all.
     pub fn around<'a>(items: impl IntoIterator<Item = &'a Item>) -> Self {
         let boxes = items.into_iter().map(|(_, bounds)| *bounds);
         boxes.fold(Self::NOTHING, Self::union)
@@ -107,13 +101,9 @@ pub struct OuterBox<T> {
 }
 
 impl<T: Scalar> OuterBox<T> {
-    /// Around a box.
     pub fn new(bounds: &Bounds) -> Self {
         Self {
-            ends: [0, 1, 2].map(|axis| {
-                let (low, high) = outward::<T>(bounds.low[axis], bounds.high[axis]);
-                [low, high]
-            }),
+            ends: [0, 1, 2].map(|axis| outward(bounds.low[axis], bounds.high[axis])),
         }
     }
 
@@ -150,7 +140,6 @@ impl<T: Scalar> OuterBox<T> {
 /// An object's index and its box.
 pub type Item = (u32, Bounds);
 
-/// What a child is.
 #[derive(Debug, Clone, Copy)]
 pub enum Child<'a, T> {
     Balls(&'a Balls<T>),
@@ -164,7 +153,6 @@ mod word {
     pub const BALLS: u32 = 1 << 30;
     pub const OBJECT: u32 = 2 << 30;
     pub const KIND: u32 = 3 << 30;
-    /// Where there is no child.
     pub const EMPTY: u32 = u32::MAX;
 }
 
@@ -175,12 +163,10 @@ struct Node<T> {
     child: [u32; WIDTH],
 }
 
-/// Boxes over objects.
 #[derive(Debug, Clone, Default)]
 pub struct Hierarchy<T> {
     nodes: Vec<Node<T>>,
     balls: Vec<Balls<T>>,
-    /// The box around all.
     pub all: OuterBox<T>,
 }
 
@@ -197,17 +183,11 @@ impl<L: Lanes> BoxRay<L> {
     #[inline(always)]
     pub fn new(l: L, origin: [L::Scalar; 3], inverse: [L::Scalar; 3]) -> Self {
         let zero = L::Scalar::default();
-        let splat = inlined(
-            #[inline(always)]
-            |x: L::Scalar| l.splat(x),
-        );
+        let splat = inlined!(|x: L::Scalar| l.splat(x));
         Self {
             origin: origin.map(&splat),
             inverse: inverse.map(&splat),
-            backwards: inverse.map(
-                #[inline(always)]
-                |x| x < zero,
-            ),
+            backwards: inverse.map(inlined!(|x| x < zero)),
         }
     }
 }
@@ -293,9 +273,8 @@ impl<T: Scalar> Hierarchy<T> {
             let node = &mut self.nodes[index];
             node.child[i] = child;
             for axis in 0..3 {
-                let (low, high) = outward::<T>(bounds.low[axis], bounds.high[axis]);
-                node.low[axis][i] = low;
-                node.high[axis][i] = high;
+                [node.low[axis][i], node.high[axis][i]] =
+                    outward(bounds.low[axis], bounds.high[axis]);
             }
         }
         index as u32
@@ -406,10 +385,7 @@ fn met<L: Lanes>(l: L, near: L::Real, far: L::Real) -> (L::Real, L::Mask) {
 }
 
 /// The numbers of the type that enclose an interval, with room to spare.
-fn outward<T: Scalar>(low: f64, high: f64) -> (T, T) {
+fn outward<T: Scalar>(low: f64, high: f64) -> [T; 2] {
     let slack = |x: f64| x.abs() * (2.0 * T::ROUNDOFF + 1e-14) + f64::MIN_POSITIVE;
-    (
-        T::from_f64(low - slack(low)),
-        T::from_f64(high + slack(high)),
-    )
+    [low - slack(low), high + slack(high)].map(T::from_f64)
 }

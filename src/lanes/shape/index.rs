@@ -8,7 +8,6 @@ use crate::math::scalar_lane::One;
 #[derive(Debug, Clone)]
 pub struct RayIndex {
     boxes: Hierarchy<f64>,
-    /// Objects without end.
     unbounded: Vec<u32>,
 }
 

@@ -14,15 +14,10 @@ use crate::math::vec3::Vec3;
 pub enum Emitter {
     /// They are not: scattered rays alone find the light.
     Unsampled,
-    /// As on the canonical disk.
     Disk,
-    /// As on the canonical rectangle.
     Rectangle,
-    /// As on the canonical sphere.
     Sphere,
-    /// As on the canonical cube.
     Cube,
-    /// As on the canonical cylinder.
     Cylinder,
 }
 
@@ -67,7 +62,6 @@ impl Length {
 /// The lines that a shape is asked about in lanes.
 #[derive(Clone, Copy)]
 pub struct Question<'a, L: Lanes> {
-    /// The placed shape.
     pub shape: &'a LaneShape<L::Scalar>,
     pub ray: &'a LaneRay<L>,
     /// Lanes whose answer counts.
@@ -78,9 +72,7 @@ pub struct Question<'a, L: Lanes> {
 
 /// A closed set in canonical coordinates. Touching counts.
 pub trait Canonical {
-    /// Its name in scene files.
     const NAME: &'static str;
-    /// Its sizes in scene files.
     const LENGTHS: &'static [Length] = &[];
     /// Whether scene files may say where its centre is, by the key `center`.
     const CENTERED: bool = false;
@@ -88,7 +80,6 @@ pub trait Canonical {
     const FLAT: bool = false;
     /// Whether a ray that leaves it outward never comes back, so that it need not be asked again.
     const CONVEX: bool = true;
-    /// How a light of this shape is sampled.
     const EMITTER: Emitter = Emitter::Unsampled;
     /// Its parallel faces, as (canonical axis, places on it).
     const FACES: &'static [(usize, &'static [f64])] = &[];
@@ -138,7 +129,6 @@ pub trait Canonical {
 
 macro_rules! shapes {
     ($($kind:ident in $module:ident,)*) => {
-        /// The canonical shapes.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         pub enum ShapeKind {
             $(
@@ -165,7 +155,6 @@ macro_rules! shapes {
             /// All of them, in the order in which messages list them.
             pub const ALL: &'static [Self] = &[$(Self::$kind,)*];
 
-            /// Their names in scene files.
             pub const NAMES: &'static [&'static str] =
                 &[$(<super::$module::$kind as Canonical>::NAME,)*];
         }
@@ -181,65 +170,43 @@ shapes! {
     Plane in plane,
 }
 
+/// The constants of [`Canonical`] by methods.
+macro_rules! constants {
+    ($(fn $method:ident(self) -> $type:ty = $constant:ident;)*) => {
+        $(
+            #[doc = concat!("[`Canonical::", stringify!($constant), "`].")]
+            #[inline(always)]
+            pub fn $method(self) -> $type {
+                of!(self, $constant)
+            }
+        )*
+    };
+}
+
 impl ShapeKind {
-    /// Its name in scene files.
-    pub fn name(self) -> &'static str {
-        of!(self, NAME)
+    constants! {
+        fn name(self) -> &'static str = NAME;
+        fn lengths(self) -> &'static [Length] = LENGTHS;
+        fn is_centered(self) -> bool = CENTERED;
+        fn is_flat(self) -> bool = FLAT;
+        fn is_convex(self) -> bool = CONVEX;
+        fn emitter(self) -> Emitter = EMITTER;
+        fn faces(self) -> &'static [(usize, &'static [f64])] = FACES;
+        fn round(self) -> Option<usize> = ROUND;
     }
 
-    /// [`Canonical::LENGTHS`].
-    pub fn lengths(self) -> &'static [Length] {
-        of!(self, LENGTHS)
-    }
-
-    /// [`Canonical::CENTERED`].
-    pub fn is_centered(self) -> bool {
-        of!(self, CENTERED)
-    }
-
-    /// [`Canonical::FLAT`].
-    #[inline(always)]
-    pub fn is_flat(self) -> bool {
-        of!(self, FLAT)
-    }
-
-    /// [`Canonical::CONVEX`].
-    #[inline(always)]
-    pub fn is_convex(self) -> bool {
-        of!(self, CONVEX)
-    }
-
-    /// [`Canonical::EMITTER`].
-    pub fn emitter(self) -> Emitter {
-        of!(self, EMITTER)
-    }
-
-    /// [`Canonical::FACES`].
-    pub fn faces(self) -> &'static [(usize, &'static [f64])] {
-        of!(self, FACES)
-    }
-
-    /// [`Canonical::ROUND`].
-    pub fn round(self) -> Option<usize> {
-        of!(self, ROUND)
-    }
-
-    /// [`Canonical::corners`].
     pub fn corners(self) -> Option<[DVec3; 2]> {
         of!(self, corners())
     }
 
-    /// [`Canonical::half_range`].
     pub fn half_range(self, along: DVec3) -> f64 {
         of!(self, half_range(along))
     }
 
-    /// [`Canonical::span`].
     pub fn span<N: Number>(self, ray: &LocalRay<N>) -> Option<Option<Span>> {
         of!(self, span(ray))
     }
 
-    /// [`Canonical::part`].
     pub fn part(self, local: DVec3) -> u32 {
         of!(self, part(local))
     }
@@ -248,7 +215,6 @@ impl ShapeKind {
 /// The methods of a placed shape that its kind answers. Implicit surfaces are intersected elsewhere:
 /// their lines miss, and their one part is [`Part::other`].
 impl<T: Scalar> LaneShape<T> {
-    /// [`Canonical::lane_span`].
     #[inline(always)]
     pub fn span<L: Lanes<Scalar = T>>(
         &self,
@@ -278,13 +244,9 @@ impl<T: Scalar> LaneShape<T> {
         asked: L::Mask,
         limit: L::Real,
     ) -> lanes::Span<L> {
-        l.vectorize(
-            #[inline(always)]
-            || self.span(l, ray, asked, limit),
-        )
+        l.vectorize(inlined!(|| self.span(l, ray, asked, limit)))
     }
 
-    /// [`Canonical::parts`].
     pub fn parts(&self) -> Vec<Part<T>> {
         match self.kind {
             Some(kind) => of!(kind, parts(self)),
@@ -292,7 +254,6 @@ impl<T: Scalar> LaneShape<T> {
         }
     }
 
-    /// [`Canonical::surface`].
     #[inline(always)]
     pub fn surface<L: Lanes<Scalar = T>>(
         &self,

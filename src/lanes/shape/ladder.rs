@@ -13,7 +13,6 @@ use crate::math::number::{Bounded, Number, binary_exponent, dot};
 
 /// A question about a line in an object's coordinates, answered by signs of numbers.
 pub trait Question {
-    /// What is asked for.
     type Answer;
     /// The answer, or `None` where this kind of number cannot tell; exact numbers always can.
     fn ask<N: Number>(&self, ray: &LocalRay<N>) -> Option<Self::Answer>;
@@ -25,7 +24,6 @@ pub trait Question {
 pub struct Frame<N> {
     /// Adjugate of the linear part, times the determinant's sign and a common power of two.
     pub adjugate: [[N; 3]; 3],
-    /// The matrix's last column.
     pub translation: [N; 3],
     /// |determinant|, times the same power of two.
     pub scale: N,
@@ -39,7 +37,6 @@ pub struct ScaledRay {
 }
 
 impl ScaledRay {
-    /// Chooses the power of two.
     pub fn new(ray: &Ray) -> Self {
         Self {
             ray: *ray,
@@ -57,12 +54,10 @@ impl ScaledRay {
         self.exponent
     }
 
-    /// The ray's origin as given.
     pub fn origin<N: Number>(&self) -> [N; 3] {
         self.ray.origin.to_array().map(N::of)
     }
 
-    /// The scaled direction.
     pub fn direction<N: Number>(&self) -> [N; 3] {
         let components = self.ray.direction.to_array();
         components.map(|x| N::scaled(x, -self.exponent))
@@ -79,6 +74,15 @@ impl<N: Number> Frame<N> {
             translation: exact.translation.each_ref().map(N::enclosing),
             scale: N::enclosing(&exact.scale),
         }
+    }
+
+    /// The inverse map's 3×4 matrix.
+    pub fn inverse(&self) -> [[N; 4]; 3] {
+        self.adjugate.each_ref().map(|row| {
+            let entry = |j: usize| row[j].divided_by(&self.scale);
+            let shift = dot(row, &self.translation).negated();
+            [entry(0), entry(1), entry(2), shift.divided_by(&self.scale)]
+        })
     }
 
     /// The ray in the object's homogeneous coordinates.
@@ -127,17 +131,14 @@ impl Frame<Exact> {
     }
 }
 
-/// One object's frames, for each rung.
 #[derive(Debug, Clone)]
 pub struct Ladder {
-    /// In f64.
     pub double: Frame<Bounded>,
     pub double_double: Frame<DoubleDouble>,
     pub exact: Frame<Exact>,
 }
 
 impl Ladder {
-    /// The frames of a placing matrix.
     pub fn new(matrix: &Affine) -> Result<Self, SingularMatrix> {
         let exact = Frame::of_matrix(matrix)?;
         Ok(Self {

@@ -13,21 +13,17 @@ pub struct LocalRay<N> {
     pub origin: [N; 3],
     /// Adjugate · world direction.
     pub direction: [N; 3],
-    /// |determinant|.
     pub scale: N,
 }
 
-/// A number n / d with d > 0.
 #[derive(Debug, Clone)]
 pub struct Fraction<N> {
-    /// The numerator n.
     pub numerator: N,
     /// The denominator d, positive.
     pub denominator: N,
 }
 
 impl<N: Number> Fraction<N> {
-    /// x / 1.
     pub fn whole(x: N) -> Self {
         Self {
             numerator: x,
@@ -54,7 +50,6 @@ pub enum Feature {
     },
     /// The coordinate `axis` is +1 (`positive`) or −1.
     Face {
-        /// 0, 1, 2 for x, y, z.
         axis: usize,
         /// The sign of the coordinate, and of the outward normal.
         positive: bool,
@@ -66,7 +61,6 @@ pub enum Feature {
 /// Which crossing of the line with a surface; what it needs to be computed at any precision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Crossing {
-    /// The part of the surface.
     pub feature: Feature,
     /// Whether the line goes along the outward normal here: the larger root of a quadric.
     pub leaving: bool,
@@ -75,9 +69,7 @@ pub struct Crossing {
 /// Where a line enters and leaves a convex shape; the same crossing twice for flat ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Span {
-    /// The crossing of smaller t.
     pub near: Crossing,
-    /// The crossing of larger t.
     pub far: Crossing,
 }
 
@@ -90,7 +82,6 @@ pub struct Quadratic<N> {
     pub b: N,
     /// Square of the origin − scale².
     pub c: N,
-    /// b² − a c.
     pub discriminant: N,
 }
 

@@ -8,7 +8,6 @@ use super::question::Limits;
 use super::{Hit, Placed, Ray, Rung, Start, Tally};
 use crate::math::number::{Bounded, Number};
 
-/// A stretch of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Query {
     pub ray: Ray,
@@ -18,7 +17,6 @@ pub struct Query {
     pub t_max: f64,
 }
 
-/// The closest crossing so far.
 struct Candidate<'a> {
     index: usize,
     object: &'a Placed,

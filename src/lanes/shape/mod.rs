@@ -42,7 +42,6 @@ pub use placed::{Placed, SingularMatrix};
 /// A shape in its own coordinates: sizes are part of the map that places it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
-    /// A canonical shape.
     Canonical(ShapeKind),
     /// f(x, y, z) = 0 inside a box.
     Implicit(Implicit),
@@ -96,23 +95,17 @@ pub enum Rung {
     Double,
     /// Double-double with a forward error bound.
     DoubleDouble,
-    /// Exact integers.
     Exact,
 }
 
-/// How many questions each rung has decided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Tally {
-    /// Decided in f64.
     pub double: u64,
-    /// Decided in double-double.
     pub double_double: u64,
-    /// Decided exactly.
     pub exact: u64,
 }
 
 impl Tally {
-    /// One more question decided on this rung.
     pub fn count(&mut self, rung: Rung) {
         match rung {
             Rung::Double => self.double += 1,
@@ -121,7 +114,6 @@ impl Tally {
         }
     }
 
-    /// The counts of both together.
     pub fn joined(self, other: Self) -> Self {
         Self {
             double: self.double + other.double,
@@ -131,7 +123,6 @@ impl Tally {
     }
 }
 
-/// A crossing of a line with a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
     /// Where on the ray, in units of its direction; finite.
@@ -146,15 +137,12 @@ pub struct Hit {
     pub local: DVec3,
     /// Whether the ray meets the outward (+z) side.
     pub front: bool,
-    /// What decided that this is the hit.
     pub rung: Rung,
 }
 
 /// Both crossings of a line with a convex surface; the same one twice for flat shapes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossings {
-    /// Where the line enters.
     pub near: Hit,
-    /// Where it leaves.
     pub far: Hit,
 }

@@ -9,7 +9,7 @@ use super::value::{self, Values};
 use super::{Crossings, Hit, Ray, Rung, ShapeKind, Start, Tally};
 use crate::math::affine::Affine;
 use crate::math::exact::Exact;
-use crate::math::number::{Bounded, Number, dot};
+use crate::math::number::{Bounded, Number};
 
 /// The matrix maps space onto a plane or less (or has entries that are not finite).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -38,12 +38,10 @@ impl Placed {
         })
     }
 
-    /// The shape before it was placed.
     pub fn kind(&self) -> ShapeKind {
         self.kind
     }
 
-    /// The matrix it was placed with.
     pub fn to_world(&self) -> &Affine {
         &self.to_world
     }
@@ -80,15 +78,10 @@ impl Placed {
 
     /// World → canonical coordinates, every entry computed in double-double and rounded once.
     pub fn inverse(&self) -> Affine {
-        let frame = &self.ladder.double_double;
-        let rows = frame.adjugate.each_ref().map(|row| {
-            let entry = |j: usize| row[j].divided_by(&frame.scale).to_f64();
-            let shift = dot(row, &frame.translation)
-                .negated()
-                .divided_by(&frame.scale);
-            [entry(0), entry(1), entry(2), shift.to_f64()]
-        });
-        Affine { rows }
+        let entries = self.ladder.double_double.inverse();
+        Affine {
+            rows: entries.map(|row| row.map(|entry| entry.to_f64())),
+        }
     }
 
     /// The map between world and object, on each rung.

@@ -7,7 +7,6 @@ use super::line::{Crossing, Fraction, LocalRay, Span};
 use super::{ShapeKind, Start};
 use crate::math::number::Number;
 
-/// The part of a ray on which crossings count.
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
     /// Crossings must come after this …
@@ -34,9 +33,7 @@ pub struct First<'a> {
     pub kind: ShapeKind,
     /// The ray in the world, for the units of t.
     pub ray: &'a ScaledRay,
-    /// Where crossings count.
     pub limits: &'a Limits,
-    /// What is known of the origin.
     pub start: Start,
 }
 

@@ -18,7 +18,6 @@ pub struct Resolver {
 pub struct Departure {
     /// Index of the object; `u32::MAX` for none.
     pub object: u32,
-    /// Whether the ray goes into the object.
     pub inward: bool,
 }
 
@@ -28,16 +27,12 @@ pub struct Doubt<'a> {
     /// The objects to ask; `None` for all.
     pub candidates: Option<&'a [u32]>,
     pub ray: Ray,
-    /// What its start knows.
     pub departure: Departure,
 }
 
-/// What the ladder found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Resolved {
-    /// Where on the ray.
     pub t: f64,
-    /// Index of the object.
     pub object: u32,
     /// Which of its parts: the axis of a cube's face, else 0.
     pub part: u32,
@@ -65,7 +60,6 @@ impl Resolver {
         }
     }
 
-    /// The closest hit.
     pub fn nearest(&self, doubt: &Doubt<'_>, tally: &mut Tally) -> Option<Resolved> {
         let Doubt {
             candidates,

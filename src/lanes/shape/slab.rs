@@ -10,7 +10,6 @@ use crate::math::vec3::Vec3;
 
 /// Where the line enters and leaves the slab |coordinate| ≤ 1.
 pub enum Slab {
-    /// Crosses both faces.
     Crossed(Span),
     /// Parallel to the faces and between them (or in one).
     Inside,
@@ -18,7 +17,6 @@ pub enum Slab {
     Outside,
 }
 
-/// The slab of this axis.
 pub fn slab<N: Number>(ray: &LocalRay<N>, axis: usize) -> Option<Slab> {
     let upward = match ray.direction[axis].sign()? {
         Ordering::Greater => true,
@@ -69,9 +67,7 @@ pub struct LaneSlab<L: Lanes> {
 pub struct Coordinate<L: Lanes> {
     pub origin: L::Real,
     pub direction: L::Real,
-    /// What o is off by at most.
     pub origin_error: L::Real,
-    /// What d is off by at most.
     pub direction_error: L::Real,
 }
 
@@ -123,7 +119,6 @@ pub fn lane_slab<L: Lanes>(l: L, coordinate: &Coordinate<L>) -> LaneSlab<L> {
 pub struct Along<L: Lanes> {
     /// Lanes for which it says nothing either.
     pub lost: L::Mask,
-    /// The line runs outside of the slab.
     pub outside: L::Mask,
 }
 
@@ -143,12 +138,8 @@ impl<L: Lanes> LaneSlab<L> {
         let inside = self.parallel & (o.abs() + drift).lt(one);
         let outside = self.parallel & (o.abs() - drift).gt(one);
         let far = l.real(f64::INFINITY);
-        for end in [&mut self.near.low, &mut self.near.high] {
-            *end = l.select(self.parallel, -far, *end);
-        }
-        for end in [&mut self.far.low, &mut self.far.high] {
-            *end = l.select(self.parallel, far, *end);
-        }
+        self.near = self.near.replaced(l, self.parallel, -far);
+        self.far = self.far.replaced(l, self.parallel, far);
         Along {
             lost: self.parallel & !inside & !outside,
             outside,
@@ -168,10 +159,7 @@ pub fn reach<L: Lanes>(
 ) -> L::Real {
     let (e, _) = shape.largest_errors(l, ray, 3);
     let sum = o.x.abs() + o.y.abs() + o.z.abs();
-    let [dx, dy, dz] = shape.direction_error.map(
-        #[inline(always)]
-        |error| l.splat(error),
-    );
+    let [dx, dy, dz] = shape.direction_error.map(inlined!(|error| l.splat(error)));
     let slowest = (d.x.abs() - dx).max(d.y.abs() - dy).max(d.z.abs() - dz);
     (sum + (e + l.real(3.0))) / slowest.max(l.real(0.0))
 }

@@ -41,7 +41,6 @@ impl Canonical for Sphere {
         }))
     }
 
-    /// Where the lines meet the sphere.
     #[inline(always)]
     fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
         let Question {
@@ -133,20 +132,13 @@ impl<T: Scalar> Ball<T> {
 
 /// Where the numbers of the ball that a lane asks come from.
 pub trait Asked<L: Lanes> {
-    /// [`Ball::centre`].
     fn centre(&self, l: L) -> Vec3<L::Real>;
-    /// [`Ball::radius`].
     fn radius(&self, l: L) -> L::Real;
     fn radius_squared(&self, l: L) -> L::Real;
-    /// [`Ball::offset_error`].
     fn offset_error(&self, l: L) -> L::Real;
-    /// [`Ball::curvature`].
     fn curvature(&self, l: L) -> L::Real;
-    /// [`Ball::reach`].
     fn reach(&self, l: L) -> L::Real;
-    /// [`Ball::clear_squared`].
     fn clear_squared(&self, l: L) -> L::Real;
-    /// [`Ball::clear`].
     fn clear(&self, l: L) -> L::Real;
 }
 
@@ -161,7 +153,6 @@ macro_rules! numbers {
     };
 }
 
-/// All lanes ask the same ball.
 impl<L: Lanes> Asked<L> for Ball<L::Scalar> {
     #[inline(always)]
     fn centre(&self, l: L) -> Vec3<L::Real> {
@@ -179,8 +170,10 @@ impl<L: Lanes> Asked<L> for Ball<L::Scalar> {
     );
 }
 
-/// The discriminant from the foot of the perpendicular (Haines, Günther and Akenine-Möller, "Precision
-/// Improvements for Ray/Sphere Intersection", Ray Tracing Gems ch. 7, 2019), in canonical coordinates.
+/// Where lines meet the unit sphere, or the unit circle seen along a cylinder's axis, by the
+/// discriminant from the foot of the perpendicular (Haines, Günther and Akenine-Möller,
+/// "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems ch. 7, 2019), in
+/// canonical coordinates: its parameter and squared distance, 1/|d|, and the errors E and D.
 ///
 /// Let e = E + |t₀| D with t₀ the foot's parameter, and q = D/|d|, the relative error of the
 /// direction, below ⅛. The foot f moves across the ray by δo + t₀ δd, at most √3 e; and along it,
@@ -189,21 +182,15 @@ impl<L: Lanes> Asked<L> for Ball<L::Scalar> {
 /// more times q: so |f|² is within (8e + 8u + 64q²) max(1, |f|²) + 16 e² of its exact value. Where
 /// q ≥ ⅛ that is more than 1 and more than |f|², and nothing is decided.
 #[inline(always)]
-fn ellipsoid_span<L: Lanes>(
+pub fn round_span<L: Lanes>(
     l: L,
-    shape: &LaneShape<L::Scalar>,
-    ray: &LaneRay<L>,
+    foot_t: L::Real,
+    squared: L::Real,
+    inverse_length: L::Real,
+    (e0, dd): (L::Real, L::Real),
 ) -> lanes::Span<L> {
     let u = <L::Scalar as Scalar>::ROUNDOFF;
-    let o = shape.inverse.point(l, ray.origin);
-    let d = shape.inverse.vector(l, ray.direction);
-    let inverse_square = l.real(1.0) / d.length_squared();
-    let inverse_length = inverse_square.sqrt();
-    let foot_t = -(o.dot(d) * inverse_square);
-    let foot = o.along(d, foot_t);
-    let squared = foot.length_squared();
     let c = l.real(1.0) - squared;
-    let (e0, dd) = shape.largest_errors(l, ray, 3);
     let e = foot_t.abs().mul_add(dd, e0);
     let q = dd * inverse_length;
     let relative = (q * q).mul_add(l.real(64.0), e.mul_add(l.real(8.0), l.real(8.0 * u)));
@@ -222,6 +209,21 @@ fn ellipsoid_span<L: Lanes>(
         miss: c.lt(-c_error),
         parts: [l.int(0); 2],
     }
+}
+
+#[inline(always)]
+fn ellipsoid_span<L: Lanes>(
+    l: L,
+    shape: &LaneShape<L::Scalar>,
+    ray: &LaneRay<L>,
+) -> lanes::Span<L> {
+    let o = shape.inverse.point(l, ray.origin);
+    let d = shape.inverse.vector(l, ray.direction);
+    let inverse_square = l.real(1.0) / d.length_squared();
+    let foot_t = -(o.dot(d) * inverse_square);
+    let squared = o.along(d, foot_t).length_squared();
+    let errors = shape.largest_errors(l, ray, 3);
+    round_span(l, foot_t, squared, inverse_square.sqrt(), errors)
 }
 
 /// The same about the centre in world units, for a ball.
@@ -258,9 +260,7 @@ pub fn ball_span<L: Lanes>(
 
 /// The point of a line that is closest to a ball's centre.
 pub struct Foot<L: Lanes> {
-    /// Its place on the line.
     t: L::Real,
-    /// Its squared distance from the centre.
     squared: L::Real,
 }
 

@@ -15,7 +15,6 @@ pub struct Surd {
     minus: bool,
 }
 
-/// ±√square.
 struct Root {
     square: Exact,
     minus: bool,
@@ -34,7 +33,6 @@ fn order(x: &Exact) -> Ordering {
 }
 
 impl Surd {
-    /// Where this crossing lies on its ray.
     pub fn of(crossing: &Crossing, ray: &LocalRay<Exact>) -> Self {
         let zero = Exact::of(0.0);
         match (crossing.fraction(ray), crossing.feature) {
@@ -77,7 +75,6 @@ impl Surd {
     }
 }
 
-/// Sign of A + B.
 fn sign_of_roots(a: &Root, b: &Root) -> Ordering {
     match (a.sign(), b.sign()) {
         (Ordering::Equal, sign) | (sign, Ordering::Equal) => sign,

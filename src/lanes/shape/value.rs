@@ -10,7 +10,6 @@ use crate::math::number::{Number, dot, power_of_two};
 /// (relative to the value for t, to 1 for the others).
 const SHARP: f64 = f64::EPSILON / 32.0;
 
-/// Where a crossing is.
 #[derive(Debug, Clone, Copy)]
 pub struct Values {
     /// In units of the world direction.

@@ -10,14 +10,12 @@ use super::token::fits;
 use super::{MOST_EXPONENT, MOST_OPERATIONS, fold};
 use crate::field::tape::{Binary, Operation, Place, Tape, Unary};
 
-/// What a part of an expression came to.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Value {
     Constant(BigRational),
     Result(Place),
 }
 
-/// A tape in the making.
 #[derive(Debug, Default)]
 pub(super) struct Builder {
     tape: Tape,
@@ -36,7 +34,6 @@ impl Builder {
         (tape, spans)
     }
 
-    /// Adds an operation.
     pub fn push(&mut self, operation: Operation) -> Built {
         let place = self.tape.push(operation);
         self.note()?;
@@ -210,7 +207,6 @@ impl Builder {
         }
     }
 
-    /// Minimum, maximum or the angle of a point.
     pub fn binary(&mut self, function: Binary, a: Value, b: Value) -> Built {
         match (function, &a, &b) {
             (Binary::Minimum, Value::Constant(x), Value::Constant(y)) => constant(x.min(y).clone()),

@@ -4,11 +4,9 @@ use std::ops::Range;
 
 use super::{DEEPEST, LONGEST, MOST_BITS, MOST_EXPONENT, MOST_OPERATIONS};
 
-/// Something wrong in an expression, and where.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{problem}")]
 pub struct ExpressionError {
-    /// What is wrong.
     pub problem: Problem,
     /// The bytes of the expression it is about; empty at its end.
     pub span: Range<usize>,
@@ -41,72 +39,48 @@ impl From<Problem> for ExpressionError {
     }
 }
 
-/// The kinds of mistakes.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Problem {
     #[error("the expression is empty")]
     Empty,
-    /// The text ends too soon.
     #[error("the expression ends here")]
     End,
-    /// A character that no part of the language begins with.
     #[error("the character {0:?} has no meaning here")]
     Character(char),
-    /// A word that cannot stand where it stands.
     #[error("\"{0}\" cannot stand here")]
     Unexpected(String),
-    /// A parenthesis that was not opened.
     #[error("this \")\" closes nothing")]
     Closing,
-    /// A parenthesis that is not closed.
     #[error("this \"(\" is not closed")]
     Opening,
-    /// A name that is none.
     #[error("the name \"{0}\" is not known")]
     UnknownName(String),
-    /// A call of something that is no function.
     #[error("there is no function \"{0}\"")]
     UnknownFunction(String),
-    /// A function that stands alone.
     #[error("the function \"{0}\" has no arguments")]
     NoCall(String),
-    /// Too few or too many arguments.
     #[error("\"{name}\" has {found} argument{}", if *found == 1 { "" } else { "s" })]
-    Arguments {
-        /// The function.
-        name: String,
-        /// As many as it was given.
-        found: usize,
-    },
-    /// x, y or z in a constant.
+    Arguments { name: String, found: usize },
     #[error("the coordinate \"{0}\" in a constant")]
     Coordinate(String),
-    /// A constant that is not rational.
     #[error("the value is not a rational number")]
     NotRational,
-    /// A parameter's name that means something else.
     #[error("the name \"{0}\" means something already")]
     NameTaken(String),
-    /// A parameter's name that is not a name.
     #[error("\"{0}\" is not a name")]
     NotAName(String),
-    /// Undefined for every x, y, z.
     #[error("{0} is undefined")]
     Undefined(&'static str),
-    /// A constant that is not zero: no surface.
     #[error("the expression does not depend on x, y or z: its surface is empty")]
     Constant,
     #[error("the expression is zero everywhere")]
     EverywhereZero,
-    /// Too many bytes.
     #[error("the expression has more than {LONGEST} bytes")]
     TooLong,
-    /// Too deeply nested.
     #[error("the expression is nested more than {DEEPEST} deep")]
     TooDeep,
     #[error("the expression has more than {MOST_OPERATIONS} different operations")]
     TooManyOperations,
-    /// A constant with too many digits.
     #[error("a constant here has more than {MOST_BITS} bits")]
     TooManyDigits,
     #[error("the exponent is beyond ±{MOST_EXPONENT}")]

@@ -8,7 +8,6 @@ use super::error::Problem;
 use crate::field::rational::square_root;
 use crate::field::tape::Unary;
 
-/// cⁿ.
 pub(super) fn whole_power(c: &BigRational, n: i32) -> Result<BigRational, Problem> {
     if c.is_zero() {
         return match n {

@@ -28,7 +28,7 @@ pub use error::{ExpressionError, Problem};
 pub use token::rational;
 
 use super::polynomial::Polynomial;
-use super::tape::{Binary, Operation, Tape};
+use super::tape::{Binary, Operation, Tape, Unary};
 use build::Value;
 use parser::Parser;
 
@@ -36,37 +36,41 @@ use parser::Parser;
 pub const LONGEST: usize = 1 << 16;
 /// Deepest nesting of parentheses, signs and exponents: a bound on the parser's own recursion.
 pub const DEEPEST: usize = 128;
-/// Most operations of one field.
 pub const MOST_OPERATIONS: usize = 4096;
 /// Largest numerator and denominator of a constant, bits: the squares of all doubles fit.
 pub const MOST_BITS: u64 = 4096;
 /// Largest whole exponent of something that is not constant.
 pub const MOST_EXPONENT: i32 = 1024;
 
-/// Functions by name with the number of their arguments; `min` and `max` take two or more.
-pub const FUNCTIONS: &[(&str, usize)] = &[
-    ("sqrt", 1),
-    ("abs", 1),
-    ("min", 2),
-    ("max", 2),
-    ("exp", 1),
-    ("log", 1),
-    ("sin", 1),
-    ("cos", 1),
-    ("tan", 1),
-    ("asin", 1),
-    ("acos", 1),
-    ("atan", 1),
-    ("atan2", 2),
-    ("sinh", 1),
-    ("cosh", 1),
-    ("tanh", 1),
+/// A function that has a name: of one value, or of two; minimum and maximum take more, too.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Function {
+    Unary(Unary),
+    Binary(Binary),
+}
+
+pub const FUNCTIONS: &[(&str, Function)] = &[
+    ("sqrt", Function::Unary(Unary::SquareRoot)),
+    ("abs", Function::Unary(Unary::Absolute)),
+    ("min", Function::Binary(Binary::Minimum)),
+    ("max", Function::Binary(Binary::Maximum)),
+    ("exp", Function::Unary(Unary::Exponential)),
+    ("log", Function::Unary(Unary::Logarithm)),
+    ("sin", Function::Unary(Unary::Sine)),
+    ("cos", Function::Unary(Unary::Cosine)),
+    ("tan", Function::Unary(Unary::Tangent)),
+    ("asin", Function::Unary(Unary::ArcSine)),
+    ("acos", Function::Unary(Unary::ArcCosine)),
+    ("atan", Function::Unary(Unary::ArcTangent)),
+    ("atan2", Function::Binary(Binary::ArcTangent2)),
+    ("sinh", Function::Unary(Unary::HyperbolicSine)),
+    ("cosh", Function::Unary(Unary::HyperbolicCosine)),
+    ("tanh", Function::Unary(Unary::HyperbolicTangent)),
 ];
 
 /// Names that are neither functions nor parameters.
 pub const RESERVED: &[&str] = &["x", "y", "z", "pi"];
 
-/// A name for a constant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameter {
     /// A letter or `_`, then letters, digits or `_`.
@@ -77,7 +81,6 @@ pub struct Parameter {
 /// A field that depends on the place, as far as the text shows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expression {
-    /// Its operations.
     pub tape: Tape,
     /// For each operation the bytes of the text that wrote it first.
     pub spans: Vec<Range<usize>>,

@@ -5,12 +5,11 @@ use std::ops::Range;
 use super::build::{Builder, Value};
 use super::error::{ExpressionError, Problem};
 use super::token::{self, Token, Word};
-use super::{DEEPEST, FUNCTIONS, LONGEST, Parameter, RESERVED, rational};
+use super::{DEEPEST, FUNCTIONS, Function, LONGEST, Parameter, RESERVED, rational};
 use crate::field::tape::{Binary, Operation, Unary};
 
 type Parsed = Result<(Value, Range<usize>), ExpressionError>;
 
-/// Reads one expression.
 pub(super) struct Parser<'a> {
     text: &'a str,
     parameters: &'a [Parameter],
@@ -27,7 +26,6 @@ const VALUE: &str = "a number, a name, a function or \"(\"";
 const OPERATOR: &str = "one of + - * / ^";
 
 impl<'a> Parser<'a> {
-    /// Reads the whole text.
     pub fn read(
         text: &'a str,
         parameters: &'a [Parameter],
@@ -85,7 +83,6 @@ impl<'a> Parser<'a> {
         parsed
     }
 
-    /// An operation of the text at `span`.
     fn make(
         &mut self,
         span: Range<usize>,
@@ -227,7 +224,7 @@ impl<'a> Parser<'a> {
     }
 
     fn call(&mut self, name: &str, span: Range<usize>) -> Parsed {
-        let Some((_, wanted)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
+        let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
             let taken = RESERVED.contains(&name) || self.parameters.iter().any(|p| p.name == name);
             let problem = Problem::UnknownFunction(name.to_owned());
             let mut error = ExpressionError::new(problem, span);
@@ -249,51 +246,34 @@ impl<'a> Parser<'a> {
         }
         let close = self.close(&open, "one of + - * / ^ , or \")\"")?;
         let whole = span.start..close.end;
-        let several = matches!(name, "min" | "max");
+        let (wanted, several) = match function {
+            Function::Unary(_) => (1, false),
+            Function::Binary(function) => (2, *function != Binary::ArcTangent2),
+        };
         let found = arguments.len();
-        if found < *wanted || (found > *wanted && !several) {
+        if found < wanted || (found > wanted && !several) {
             let name = name.to_owned();
             let more = if several { " or more" } else { "" };
             let words = format!("{wanted}{more}");
             let error = ExpressionError::new(Problem::Arguments { name, found }, whole);
             return Err(error.expected(words));
         }
-        self.make(whole, |builder| apply(builder, name, arguments))
+        self.make(whole, |builder| apply(builder, *function, arguments))
     }
 }
 
-/// A function of its arguments, as many as it needs.
-fn apply(builder: &mut Builder, name: &str, arguments: Vec<Value>) -> Result<Value, Problem> {
-    let binary = match name {
-        "min" => Some(Binary::Minimum),
-        "max" => Some(Binary::Maximum),
-        "atan2" => Some(Binary::ArcTangent2),
-        _ => None,
-    };
+/// A function of its arguments, as many as it needs: the caller has counted them.
+fn apply(
+    builder: &mut Builder,
+    function: Function,
+    arguments: Vec<Value>,
+) -> Result<Value, Problem> {
     let mut arguments = arguments.into_iter();
-    // The number of arguments was checked by the caller.
     let first = arguments.next().ok_or(Problem::End)?;
-    if let Some(function) = binary {
-        let mut value = first;
-        for argument in arguments {
-            value = builder.binary(function, value, argument)?;
+    match function {
+        Function::Unary(function) => builder.unary(function, first),
+        Function::Binary(function) => {
+            arguments.try_fold(first, |value, next| builder.binary(function, value, next))
         }
-        return Ok(value);
     }
-    let function = match name {
-        "sqrt" => Unary::SquareRoot,
-        "abs" => Unary::Absolute,
-        "exp" => Unary::Exponential,
-        "log" => Unary::Logarithm,
-        "sin" => Unary::Sine,
-        "cos" => Unary::Cosine,
-        "tan" => Unary::Tangent,
-        "asin" => Unary::ArcSine,
-        "acos" => Unary::ArcCosine,
-        "atan" => Unary::ArcTangent,
-        "sinh" => Unary::HyperbolicSine,
-        "cosh" => Unary::HyperbolicCosine,
-        _ => Unary::HyperbolicTangent,
-    };
-    builder.unary(function, first)
 }

@@ -17,7 +17,6 @@ pub(super) enum Word {
     End,
 }
 
-/// A word and its bytes.
 #[derive(Debug, Clone)]
 pub(super) struct Token {
     pub word: Word,
@@ -87,7 +86,6 @@ fn in_name(byte: u8) -> bool {
     begins_name(byte) || byte.is_ascii_digit()
 }
 
-/// Whether the text is one name.
 pub(super) fn is_name(text: &str) -> bool {
     text.bytes().next().is_some_and(begins_name) && text.bytes().all(in_name)
 }

@@ -25,25 +25,22 @@ fn function_of<L: DoubleLanes>(
     a: &Interval<L>,
     domain: &mut Domain<L>,
 ) -> Interval<L> {
-    a.lanes.vectorize(
-        #[inline(always)]
-        || match function {
-            Unary::Negative => -*a,
-            Unary::SquareRoot => a.square_root_noted(domain),
-            Unary::Absolute => a.absolute(),
-            Unary::Exponential => a.exponential(),
-            Unary::Logarithm => a.logarithm(domain),
-            Unary::Sine => a.sine_cosine().0,
-            Unary::Cosine => a.sine_cosine().1,
-            Unary::Tangent => a.tangent(domain),
-            Unary::ArcSine => a.arc_sine(domain),
-            Unary::ArcCosine => a.arc_cosine(domain),
-            Unary::ArcTangent => a.arc_tangent(),
-            Unary::HyperbolicSine => a.hyperbolic_sine(),
-            Unary::HyperbolicCosine => a.hyperbolic_cosine(),
-            Unary::HyperbolicTangent => a.hyperbolic_tangent(),
-        },
-    )
+    a.lanes.vectorize(inlined!(|| match function {
+        Unary::Negative => -*a,
+        Unary::SquareRoot => a.square_root_noted(domain),
+        Unary::Absolute => a.absolute(),
+        Unary::Exponential => a.exponential(),
+        Unary::Logarithm => a.logarithm(domain),
+        Unary::Sine => a.sine_cosine().0,
+        Unary::Cosine => a.sine_cosine().1,
+        Unary::Tangent => a.tangent(domain),
+        Unary::ArcSine => a.arc_sine(domain),
+        Unary::ArcCosine => a.arc_cosine(domain),
+        Unary::ArcTangent => a.arc_tangent(),
+        Unary::HyperbolicSine => a.hyperbolic_sine(),
+        Unary::HyperbolicCosine => a.hyperbolic_cosine(),
+        Unary::HyperbolicTangent => a.hyperbolic_tangent(),
+    }))
 }
 
 /// aᵇ, the angle of the point (b, a): one copy for each instruction set.
@@ -53,13 +50,10 @@ fn function_of_two<L: DoubleLanes>(
     [a, b]: [&Interval<L>; 2],
     domain: &mut Domain<L>,
 ) -> Interval<L> {
-    a.lanes.vectorize(
-        #[inline(always)]
-        || match function {
-            Binary::Power => a.power(*b, domain),
-            _ => a.arc_tangent_of_quotient(*b, domain),
-        },
-    )
+    a.lanes.vectorize(inlined!(|| match function {
+        Binary::Power => a.power(*b, domain),
+        _ => a.arc_tangent_of_quotient(*b, domain),
+    }))
 }
 
 /// The slope of a function of one value: a′ times or over something.
@@ -70,42 +64,38 @@ fn slope_of<L: DoubleLanes>(
     value: &Interval<L>,
     domain: &mut Domain<L>,
 ) -> Interval<L> {
-    a.value.lanes.vectorize(
-        #[inline(always)]
-        || {
-            let one = Interval::splat(a.value.lanes, [1.0, 1.0]);
-            let (x, y) = (a.value, *value);
-            let factor = match function {
-                Unary::Negative => -one,
-                Unary::Exponential => y,
-                Unary::Sine => function_of(Unary::Cosine, &x, domain),
-                Unary::Cosine => -function_of(Unary::Sine, &x, domain),
-                Unary::Tangent => one + y.squared(),
-                Unary::HyperbolicSine => function_of(Unary::HyperbolicCosine, &x, domain),
-                Unary::HyperbolicCosine => function_of(Unary::HyperbolicSine, &x, domain),
-                Unary::HyperbolicTangent => one - y.squared(),
-                _ => one,
-            };
-            let divisor = match function {
-                Unary::SquareRoot => y.times_number(2.0),
-                Unary::Logarithm => x,
-                Unary::ArcSine => ((one - x) * (one + x)).square_root(),
-                Unary::ArcCosine => -((one - x) * (one + x)).square_root(),
-                Unary::ArcTangent => one + x.squared(),
-                _ => return a.slope * factor,
-            };
-            a.slope / divisor
-        },
-    )
+    a.value.lanes.vectorize(inlined!(|| {
+        let one = Interval::splat(a.value.lanes, [1.0, 1.0]);
+        let (x, y) = (a.value, *value);
+        let factor = match function {
+            Unary::Negative => -one,
+            Unary::Exponential => y,
+            Unary::Sine => function_of(Unary::Cosine, &x, domain),
+            Unary::Cosine => -function_of(Unary::Sine, &x, domain),
+            Unary::Tangent => one + y.squared(),
+            Unary::HyperbolicSine => function_of(Unary::HyperbolicCosine, &x, domain),
+            Unary::HyperbolicCosine => function_of(Unary::HyperbolicSine, &x, domain),
+            Unary::HyperbolicTangent => one - y.squared(),
+            _ => one,
+        };
+        let divisor = match function {
+            Unary::SquareRoot => y.times_number(2.0),
+            Unary::Logarithm => x,
+            Unary::ArcSine => ((one - x) * (one + x)).square_root(),
+            Unary::ArcCosine => -((one - x) * (one + x)).square_root(),
+            Unary::ArcTangent => one + x.squared(),
+            _ => return a.slope * factor,
+        };
+        a.slope / divisor
+    }))
 }
 
 /// A whole power: one copy for each instruction set.
 #[inline(never)]
 fn whole_power_of<L: DoubleLanes>(a: &Jet<L>, n: i32, domain: &mut Domain<L>) -> Jet<L> {
-    a.value.lanes.vectorize(
-        #[inline(always)]
-        || a.whole_power(n, domain),
-    )
+    a.value
+        .lanes
+        .vectorize(inlined!(|| a.whole_power(n, domain)))
 }
 
 impl<L: DoubleLanes> Arithmetic<L> for Interval<L> {
@@ -156,7 +146,8 @@ impl<L: DoubleLanes> Arithmetic<L> for Interval<L> {
 impl<L: DoubleLanes> Arithmetic<L> for Jet<L> {
     #[inline(always)]
     fn constant(value: Interval<L>) -> Self {
-        Jet::constant(value)
+        let slope = Interval::splat(value.lanes, [0.0, 0.0]);
+        Self { value, slope }
     }
     #[inline(always)]
     fn unary(self, function: Unary, domain: &mut Domain<L>) -> Self {
@@ -194,15 +185,21 @@ impl<L: DoubleLanes> Arithmetic<L> for Jet<L> {
     }
     #[inline(always)]
     fn squared(self) -> Self {
-        Jet::squared(self)
+        self.chained(self.value.squared(), self.value.times_number(2.0))
     }
     #[inline(always)]
     fn times_number(self, c: f64) -> Self {
-        Jet::times_number(self, c)
+        Self {
+            value: self.value.times_number(c),
+            slope: self.slope.times_number(c),
+        }
     }
     #[inline(always)]
     fn plus_constant(self, c: Interval<L>) -> Self {
-        Jet::plus_constant(self, c)
+        Self {
+            value: self.value + c,
+            ..self
+        }
     }
     #[inline(always)]
     fn sine_cosine(self) -> (Self, Self) {

@@ -6,7 +6,6 @@ use super::{IntervalProgram, Step};
 use crate::math::interval::{Domain, Interval, ScalarInterval, enclosing_rational};
 use crate::math::scalar_lane::One;
 
-/// Turns a tape into a program.
 pub(super) struct Compiler<'a> {
     tape: &'a Tape,
     steps: Vec<Step>,

@@ -7,15 +7,15 @@
 
 use super::{Factor, Program, Step};
 
-/// Bounds of one coefficient.
+/// Bounds of one coefficient, or of all Bernstein coefficients of a field.
 #[derive(Debug, Clone, Copy, Default)]
-struct Bound {
+pub struct Bound {
     /// Of its magnitude.
-    size: f64,
+    pub size: f64,
     /// Of its error, the ends taken as exact.
-    error: f64,
+    pub error: f64,
     /// Of its change, for a change of 1 in every coordinate of the ends.
-    change: f64,
+    pub change: f64,
 }
 
 /// What a rounded arithmetic promises.
@@ -25,7 +25,6 @@ pub struct Rounding {
     pub unit: f64,
     /// Roundings of one multiplication and addition.
     pub steps: f64,
-    /// How many of a constant's parts are used.
     pub parts: usize,
 }
 
@@ -44,19 +43,8 @@ const UNDERFLOW: f64 = 64.0 * f64::from_bits(1);
 /// exact ones: a bound is a sum of positive terms of at most 2¹⁰ operations a coefficient.
 const INFLATION: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 
-/// Bounds for the Bernstein coefficients of the field.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FieldBounds {
-    /// Of their magnitude.
-    pub size: f64,
-    /// Of their error, the ends taken as exact.
-    pub error: f64,
-    /// Of their change, for a change of 1 in every coordinate of the ends.
-    pub change: f64,
-}
-
-/// Bounds for lines whose ends lie within `reach` of 0 on each axis.
-pub fn bounds(program: &Program, reach: [f64; 3], rounding: Rounding) -> FieldBounds {
+/// Bounds of a field's Bernstein coefficients for lines whose ends lie within `reach` of 0 on each axis.
+pub fn bounds(program: &Program, reach: [f64; 3], rounding: Rounding) -> Bound {
     let mut rows = vec![Bound::default(); program.rows()];
     for step in program.steps() {
         match step {
@@ -114,7 +102,7 @@ pub fn bounds(program: &Program, reach: [f64; 3], rounding: Rounding) -> FieldBo
         field.error = larger(field.error, row.error / binomial);
         field.change = larger(field.change, row.change / binomial);
     }
-    FieldBounds {
+    Bound {
         size: field.size * INFLATION,
         error: field.error * INFLATION,
         change: field.change * INFLATION,

@@ -45,16 +45,11 @@ impl<S: Simd> Int for u64x8<S> {
     }
     #[inline(always)]
     fn reversed(self) -> Self {
-        const ORDER: [u8; 16] = [3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12];
-        reversed_bytes(self.token(), self.bitcast(), ORDER).bitcast()
+        reversed_bytes(self.token(), self.bitcast()).bitcast()
     }
-    #[inline(always)]
-    fn same(self, other: Self) -> Self::Mask {
-        self.simd_eq(other)
-    }
-    #[inline(always)]
-    fn below(self, other: Self) -> Self::Mask {
-        self.simd_lt(other)
+    delegate! {
+        fn same(self, other) -> Self::Mask = Self::simd_eq;
+        fn below(self, other) -> Self::Mask = Self::simd_lt;
     }
 }
 

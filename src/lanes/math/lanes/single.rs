@@ -1,5 +1,7 @@
 //! Lanes of f32, sixteen to a packet.
 
+use std::ops::{Add, Mul, Sub};
+
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x16, i32x16, mask32x16, u32x16};
 
@@ -17,17 +19,12 @@ real!(f32x16, mask32x16);
 
 impl<S: Simd> Int for u32x16<S> {
     type Mask = mask32x16<S>;
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        self + other
-    }
-    #[inline(always)]
-    fn minus(self, other: Self) -> Self {
-        self - other
-    }
-    #[inline(always)]
-    fn times(self, other: Self) -> Self {
-        self * other
+    delegate! {
+        fn plus(self, other) -> Self = Add::add;
+        fn minus(self, other) -> Self = Sub::sub;
+        fn times(self, other) -> Self = Mul::mul;
+        fn same(self, other) -> Self::Mask = Self::simd_eq;
+        fn below(self, other) -> Self::Mask = Self::simd_lt;
     }
     #[inline(always)]
     fn left(self, by: u32) -> Self {
@@ -39,16 +36,7 @@ impl<S: Simd> Int for u32x16<S> {
     }
     #[inline(always)]
     fn reversed(self) -> Self {
-        const ORDER: [u8; 16] = [3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12];
-        reversed_bytes(self.token(), self.bitcast(), ORDER).bitcast()
-    }
-    #[inline(always)]
-    fn same(self, other: Self) -> Self::Mask {
-        self.simd_eq(other)
-    }
-    #[inline(always)]
-    fn below(self, other: Self) -> Self::Mask {
-        self.simd_lt(other)
+        reversed_bytes(self.token(), self.bitcast()).bitcast()
     }
 }
 

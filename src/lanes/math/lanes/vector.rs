@@ -3,8 +3,6 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{u8x16, u8x64};
 
-use super::inlined;
-
 /// Whether the instruction set's own minimum and maximum are `a < b ? a : b` and `a > b ? a : b`,
 /// as `minps` and its kin are on x86.
 #[inline(always)]
@@ -32,17 +30,18 @@ macro_rules! real {
     ($real:ident, $mask:ident) => {
         impl<S: Simd> Real for $real<S> {
             type Mask = $mask<S>;
-            #[inline(always)]
-            fn mul_add(self, a: Self, b: Self) -> Self {
-                self.mul_add_precise(a, b)
-            }
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                SimdFloat::sqrt(self)
-            }
-            #[inline(always)]
-            fn abs(self) -> Self {
-                SimdBase::abs(self)
+            delegate! {
+                fn mul_add(self, a, b) -> Self = Self::mul_add_precise;
+                fn sqrt(self) -> Self = SimdFloat::sqrt;
+                fn abs(self) -> Self = SimdBase::abs;
+                fn floor(self) -> Self = SimdFloat::floor;
+                fn round(self) -> Self = SimdFloat::round_ties_even;
+                fn copysign(self, sign) -> Self = SimdFloat::copysign;
+                fn lt(self, other) -> Self::Mask = Self::simd_lt;
+                fn le(self, other) -> Self::Mask = Self::simd_le;
+                fn gt(self, other) -> Self::Mask = Self::simd_gt;
+                fn ge(self, other) -> Self::Mask = Self::simd_ge;
+                fn same(self, other) -> Self::Mask = Self::simd_eq;
             }
             #[inline(always)]
             fn min(self, other: Self) -> Self {
@@ -59,38 +58,6 @@ macro_rules! real {
                 } else {
                     self.simd_gt(other).select(self, other)
                 }
-            }
-            #[inline(always)]
-            fn floor(self) -> Self {
-                SimdFloat::floor(self)
-            }
-            #[inline(always)]
-            fn round(self) -> Self {
-                self.round_ties_even()
-            }
-            #[inline(always)]
-            fn copysign(self, sign: Self) -> Self {
-                SimdFloat::copysign(self, sign)
-            }
-            #[inline(always)]
-            fn lt(self, other: Self) -> Self::Mask {
-                self.simd_lt(other)
-            }
-            #[inline(always)]
-            fn le(self, other: Self) -> Self::Mask {
-                self.simd_le(other)
-            }
-            #[inline(always)]
-            fn gt(self, other: Self) -> Self::Mask {
-                self.simd_gt(other)
-            }
-            #[inline(always)]
-            fn ge(self, other: Self) -> Self::Mask {
-                self.simd_ge(other)
-            }
-            #[inline(always)]
-            fn same(self, other: Self) -> Self::Mask {
-                self.simd_eq(other)
             }
         }
     };
@@ -165,18 +132,17 @@ macro_rules! lanes {
 
 pub(super) use {lanes, mask, real};
 
-/// Reverses the order of the bits in each byte, and of the bytes as `order` says in each 16.
+/// Reverses the order of the low 32 bits of each number of 32 or 64: of the bits in each byte, and of
+/// the bytes in each four.
 #[inline(always)]
-pub fn reversed_bytes<S: Simd>(simd: S, bytes: u8x64<S>, order: [u8; 16]) -> u8x64<S> {
+pub fn reversed_bytes<S: Simd>(simd: S, bytes: u8x64<S>) -> u8x64<S> {
+    const ORDER: [u8; 16] = [3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12];
     /// The four bits of the index reversed.
     const NIBBLES: [u8; 16] = [0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15];
-    let repeated = inlined(
-        #[inline(always)]
-        |block: [u8; 16]| u8x64::block_splat(u8x16::simd_from(simd, block)),
-    );
+    let repeated = inlined!(|block: [u8; 16]| u8x64::block_splat(u8x16::simd_from(simd, block)));
     let table = repeated(NIBBLES);
     let low = u8x64::splat(simd, 0x0f);
-    let bytes = bytes.swizzle_dyn_within_blocks(repeated(order));
+    let bytes = bytes.swizzle_dyn_within_blocks(repeated(ORDER));
     let high_nibbles = table.swizzle_dyn_within_blocks(bytes & low) << 4;
     let low_nibbles = table.swizzle_dyn_within_blocks((bytes >> 4) & low);
     high_nibbles | low_nibbles

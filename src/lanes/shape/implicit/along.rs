@@ -2,9 +2,9 @@
 
 use crate::field::interval_program::{IntervalProgram, Side};
 use crate::math::instructions::DoubleLanes;
-use crate::math::interval::{Interval, ScalarInterval, bits, down, up};
+use crate::math::interval::{Interval, ScalarInterval, down, up};
 use crate::math::jet::Jet;
-use crate::math::lanes::Lanes;
+use crate::math::lanes::{Lanes, Mask};
 use crate::math::scalar_lane::One;
 use crate::root::interval::{Enclosed, PIECES, Pieces};
 
@@ -29,7 +29,6 @@ impl EnclosedLine {
     }
 }
 
-/// The field of a program along a line.
 pub struct Along<'a, L: DoubleLanes> {
     lanes: L,
     program: &'a IntervalProgram,
@@ -40,7 +39,6 @@ pub struct Along<'a, L: DoubleLanes> {
 }
 
 impl<'a, L: DoubleLanes> Along<'a, L> {
-    /// Makes room for evaluations.
     pub fn new(lanes: L, program: &'a IntervalProgram, line: &'a EnclosedLine) -> Self {
         Self {
             lanes,
@@ -91,8 +89,8 @@ impl<'a, L: DoubleLanes> Along<'a, L> {
         l.store(jet.value.high, &mut pieces.value[1][place..]);
         l.store(jet.slope.low, &mut pieces.slope[0][place..]);
         l.store(jet.slope.high, &mut pieces.slope[1][place..]);
-        pieces.broken |= bits(domain.broken) << place;
-        pieces.void |= bits(domain.void) << place;
+        pieces.broken |= domain.broken.bits() << place;
+        pieces.void |= domain.void.bits() << place;
     }
 
     #[inline(always)]
@@ -123,12 +121,11 @@ impl<L: DoubleLanes> Enclosed for Along<'_, L> {
         let lanes = self.lanes;
         stage(
             lanes,
-            #[inline(always)]
-            || {
+            inlined!(|| {
                 for place in (0..PIECES).step_by(L::COUNT) {
                     self.over_lanes(&from[place..], &to[place..], place, &mut pieces);
                 }
-            },
+            }),
         );
         pieces
     }
@@ -138,8 +135,7 @@ impl<L: DoubleLanes> Enclosed for Along<'_, L> {
         let mut clear = true;
         stage(
             lanes,
-            #[inline(always)]
-            || {
+            inlined!(|| {
                 let s = Interval::splat(lanes, [from, to]);
                 let coordinates = [
                     self.coordinate(0, &s),
@@ -150,9 +146,9 @@ impl<L: DoubleLanes> Enclosed for Along<'_, L> {
                     let (value, void) =
                         self.program
                             .sides(lanes, &coordinates, place, &mut self.sides);
-                    clear &= bits(value.may_be_zero() & !void) == 0;
+                    clear &= (value.may_be_zero() & !void).bits() == 0;
                 }
-            },
+            }),
         );
         clear
     }
@@ -163,12 +159,11 @@ impl<L: DoubleLanes> Enclosed for Along<'_, L> {
         let lanes = self.lanes;
         stage(
             lanes,
-            #[inline(always)]
-            || {
+            inlined!(|| {
                 for place in (0..PIECES).step_by(L::COUNT) {
                     self.at_lanes(&t[place..], place, &mut values);
                 }
-            },
+            }),
         );
         values
     }

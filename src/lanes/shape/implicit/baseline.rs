@@ -12,11 +12,12 @@ use crate::field::{bounded, normal};
 use crate::math::affine::Affine;
 use crate::math::double_double::DoubleDouble;
 use crate::math::number::{Number, power_of_two};
+use crate::root::sign_change::first_change;
 use crate::shape::implicit::Implicit;
+use crate::shape::implicit::certified::Tier;
 use crate::shape::ladder::{Ladder, ScaledRay};
 use crate::shape::{Query, Ray, SingularMatrix};
 
-/// An implicit surface placed in the world.
 #[derive(Debug, Clone)]
 pub struct SteppingFinder {
     field: Field,
@@ -26,9 +27,9 @@ pub struct SteppingFinder {
     to_world: Affine,
 }
 
-/// Where a ray meets an implicit surface, as far as the baseline finder can tell.
+/// Where a ray meets an implicit surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stepped {
+pub struct ImplicitHit {
     /// Where on the ray, in units of its direction; finite.
     pub t: f64,
     /// World coordinates.
@@ -36,9 +37,14 @@ pub struct Stepped {
     /// Unit outward normal in the world; see [`normal`] for where the gradient
     /// vanishes.
     pub normal: Option<DVec3>,
+    /// Bounds of t; the estimate twice where nothing is proved.
+    pub enclosure: [f64; 2],
+    /// How many times it is a root along the ray, where that is known.
+    pub multiplicity: Option<u32>,
+    /// What has decided; `None` where nothing is proved.
+    pub tier: Option<Tier>,
 }
 
-/// A line in object coordinates.
 #[derive(Clone, Copy)]
 struct Line {
     origin: DVec3,
@@ -68,7 +74,7 @@ impl SteppingFinder {
 
     /// The first zero of the field, or change of its sign between two steps, with `t_min` < t <
     /// `t_max` inside the clip box; t = 0 counts where `t_min` is 0.
-    pub fn first_hit(&self, query: &Query) -> Option<Stepped> {
+    pub fn first_hit(&self, query: &Query) -> Option<ImplicitHit> {
         if !query.ray.is_valid() {
             return None;
         }
@@ -81,7 +87,14 @@ impl SteppingFinder {
         let t = scaled_t / unit;
         let normal = self.normal(line.at(scaled_t), line.direction);
         let point = query.ray.origin + query.ray.direction * t;
-        (t.is_finite() && point.is_finite()).then_some(Stepped { t, point, normal })
+        (t.is_finite() && point.is_finite()).then_some(ImplicitHit {
+            t,
+            point,
+            normal,
+            enclosure: [t, t],
+            multiplicity: None,
+            tier: None,
+        })
     }
 
     /// The unit outward normal, in the world, of a hit at t.
@@ -107,7 +120,6 @@ impl SteppingFinder {
         self.world_normal(gradient).filter(|_| certain)
     }
 
-    /// The operations of the field.
     pub fn tape(&self) -> &Tape {
         self.field.tape()
     }
@@ -145,6 +157,7 @@ impl SteppingFinder {
         }
     }
 
+    /// Of the ends of a change of sign, between which no f64 lies, the one with the smaller |field|.
     fn first_root(&self, line: &Line, limits: [f64; 2], from_zero: bool) -> Option<f64> {
         let [t_min, t_max] = limits;
         let [near, far] = self.clip(line, limits)?;
@@ -153,22 +166,10 @@ impl SteppingFinder {
         if first == 0.0 && (near > t_min || from_zero) {
             return (near < t_max).then_some(near);
         }
-        let negative = first < 0.0;
-        let step = (far - near) / f64::from(self.steps);
-        let mut low = near;
-        for i in 1..=self.steps {
-            let high = if i == self.steps {
-                far
-            } else {
-                near + step * f64::from(i)
-            };
-            if (value(high) < 0.0) != negative {
-                let t = bisect(value, low, high, negative);
-                return (t > t_min && t < t_max).then_some(t);
-            }
-            low = high;
-        }
-        None
+        let [low, high] = first_change(value, [near, far], self.steps)?;
+        let lower = value(low).abs() < value(high).abs();
+        let t = if lower { low } else { high };
+        (t > t_min && t < t_max).then_some(t)
     }
 
     /// The part of the line within the closed clip box and the limits.
@@ -202,26 +203,5 @@ impl SteppingFinder {
         let normal = rows[0] * gradient.x + rows[1] * gradient.y + rows[2] * gradient.z;
         // The squares of very short or long normals would leave the range of f64.
         (normal / normal.abs().max_element()).try_normalize()
-    }
-}
-
-/// Halves the bracket until no f64 lies between its ends; of these, the one with the smaller
-/// |field|. The sign is `negative` at `low` and not at `high`.
-fn bisect(value: impl Fn(f64) -> f64, mut low: f64, mut high: f64, negative: bool) -> f64 {
-    loop {
-        let middle = low + (high - low) / 2.0;
-        if middle <= low || middle >= high {
-            break;
-        }
-        if (value(middle) < 0.0) == negative {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    if value(low).abs() < value(high).abs() {
-        low
-    } else {
-        high
     }
 }

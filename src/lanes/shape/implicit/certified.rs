@@ -19,6 +19,7 @@ pub use place::{Certified, Limits};
 
 use crate::math::instructions::{DoubleLanes, Instructions, Job};
 use crate::math::number::{binary_exponent, power_of_two};
+use crate::math::packet::each;
 use crate::math::words::{Pair, Plain, Row};
 use crate::root::exact::ExactRoot;
 use crate::shape::Ray;
@@ -64,7 +65,6 @@ impl Default for Packet {
 }
 
 impl Packet {
-    /// Puts a ray in a lane.
     pub fn set(&mut self, lane: usize, origin: DVec3, direction: DVec3, limits: [f64; 2]) {
         for axis in 0..3 {
             self.origin[axis][lane] = origin[axis];
@@ -74,8 +74,7 @@ impl Packet {
         self.active |= 1 << lane;
     }
 
-    /// The ray in a lane.
-    fn ray(&self, lane: usize) -> Ray {
+    pub(super) fn ray(&self, lane: usize) -> Ray {
         let at = |v: &[[f64; WIDTH]; 3]| DVec3::from_array(v.map(|axis| axis[lane]));
         Ray {
             origin: at(&self.origin),
@@ -84,24 +83,17 @@ impl Packet {
     }
 }
 
-/// Which arithmetic has decided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum Tier {
-    /// f64 in lanes.
     #[default]
     Double,
-    /// Double-double in lanes.
     DoubleDouble,
-    /// Exact integers.
     Exact,
 }
 
-/// What is known of the first hits.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Answers {
-    /// There is one.
     pub found: u32,
-    /// There is none.
     pub absent: u32,
     /// Its t, in units of the direction.
     pub t: [f64; WIDTH],
@@ -111,13 +103,11 @@ pub struct Answers {
     pub high: [f64; WIDTH],
     /// How many times it is a root; 0 where that is not known.
     pub multiplicity: [u32; WIDTH],
-    /// What has decided.
     pub tiers: [Tier; WIDTH],
     /// Lanes whose enclosure is wider than [`SHARP`] times the clipped stretch.
     blurred: u32,
     /// Where the search ended in undecided lanes.
     doubt: [f64; WIDTH],
-    /// Length of the clipped stretch.
     stretch: [f64; WIDTH],
 }
 
@@ -125,7 +115,6 @@ pub struct Answers {
 /// it is what t may be off by.
 pub const SHARP: f64 = 1e-12;
 
-/// What an answer should be like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Wish {
     /// Enclosures that f64 leaves blurred are sharpened in double-double.
@@ -134,17 +123,14 @@ pub struct Wish {
     pub exact: bool,
 }
 
-/// What finders work with.
 #[derive(Debug)]
 pub struct Workspace {
     /// The instruction set of their kernels; the answers are the same with each.
     pub instructions: Instructions,
-    /// Room for the forms of a packet.
     rows: Vec<Row>,
 }
 
 impl Workspace {
-    /// To work with an instruction set.
     pub fn new(instructions: Instructions) -> Self {
         Self {
             instructions,
@@ -160,7 +146,6 @@ impl Default for Workspace {
     }
 }
 
-/// A packet to be asked in one arithmetic.
 struct Ask<'a> {
     placed: &'a Certified,
     packet: &'a Packet,
@@ -192,14 +177,14 @@ impl Certified {
         if again != 0 {
             let sharper = self.in_lanes(packet, again, true, workspace);
             let decided = sharper.found | sharper.absent;
-            for lane in lanes(again & (open | decided)) {
+            for lane in each(again & (open | decided)) {
                 answers.tiers[lane] = Tier::DoubleDouble;
                 answers.take(&sharper, lane);
             }
             open &= !decided;
         }
         if wish.exact {
-            for lane in lanes(open) {
+            for lane in each(open) {
                 answers.tiers[lane] = Tier::Exact;
                 self.settle(packet, lane, &mut answers, workspace);
             }
@@ -226,7 +211,6 @@ impl Certified {
         }
     }
 
-    /// One arithmetic's answers.
     fn in_lanes(
         &self,
         packet: &Packet,
@@ -311,7 +295,6 @@ impl Certified {
         })
     }
 
-    /// One lane, exactly.
     #[cold]
     fn decide(&self, packet: &Packet, lane: usize, answers: &mut Answers) {
         let ray = packet.ray(lane);
@@ -339,7 +322,6 @@ impl Certified {
 }
 
 impl Answers {
-    /// Takes a lane over from other answers.
     fn take(&mut self, from: &Self, lane: usize) {
         self.take_from(from, lane, lane);
     }
@@ -388,13 +370,4 @@ fn simplest(low: f64, high: f64) -> Option<f64> {
         }
         step *= 0.5;
     }
-}
-
-/// The lanes of a set.
-fn lanes(mut bits: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lane = bits.trailing_zeros() as usize;
-        bits &= bits.wrapping_sub(1);
-        (lane < 32).then_some(lane)
-    })
 }

@@ -6,8 +6,7 @@ use glam::DVec3;
 
 use super::along::EnclosedLine;
 use crate::math::double_double::DoubleDouble;
-use crate::math::instructions::DoubleLanes;
-use crate::math::interval::{Interval, ScalarInterval};
+use crate::math::interval::ScalarInterval;
 use crate::math::number::Number;
 use crate::math::scalar_lane::One;
 use crate::shape::line::LocalRay;
@@ -119,9 +118,5 @@ fn around(x: &DoubleDouble) -> f64 {
 }
 
 fn lower(x: f64, radius: f64) -> f64 {
-    difference(One, x, radius).low
-}
-
-fn difference<L: DoubleLanes>(l: L, x: L::Real, radius: L::Real) -> Interval<L> {
-    Interval::point(l, x) - Interval::point(l, radius)
+    (ScalarInterval::point(One, x) - ScalarInterval::point(One, radius)).low
 }

@@ -26,11 +26,9 @@ pub struct EnclosedField {
     factors: Vec<EnclosedFactor>,
 }
 
-/// A factor of a field.
 #[derive(Debug, Clone)]
 struct EnclosedFactor {
     program: IntervalProgram,
-    /// How often it is a factor.
     multiplicity: u32,
     /// An upper bound of its gradient's length over the box, where it is known.
     steepness: f64,
@@ -47,7 +45,6 @@ impl EnclosedFactor {
 }
 
 impl EnclosedField {
-    /// Compiles a field.
     pub fn new(tape: &Tape) -> Self {
         let parts = tape.factors().factors;
         let parts = parts.iter();
@@ -80,10 +77,7 @@ impl EnclosedField {
         search: &Searching,
     ) -> Search {
         let Some(clipped) = clipped(ray, inside, limits) else {
-            return Search {
-                outcome: Outcome::Absent,
-                evaluations: 0,
-            };
+            return Search::new(Outcome::Absent, 0);
         };
         search.instructions.run(First {
             field: self,
@@ -93,12 +87,10 @@ impl EnclosedField {
     }
 }
 
-/// How to search a ray.
 #[derive(Debug, Clone, Copy)]
 pub struct Searching {
     /// In which instructions; the zeros are the same with each.
     pub instructions: Instructions,
-    /// Which finder.
     pub method: Method,
     /// Most evaluations for each factor.
     pub bound: u32,
@@ -118,12 +110,9 @@ impl Default for Searching {
     }
 }
 
-/// A finder that works with enclosures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Method {
-    /// [`crate::root::interval`].
     Subdivision,
-    /// [`crate::root::sphere_trace`].
     Spheres,
 }
 
@@ -149,16 +138,10 @@ impl First<'_> {
             }
         };
         let Some(from) = from else {
-            return Search {
-                outcome: Outcome::Undecided,
-                evaluations: 4,
-            };
+            return Search::new(Outcome::Undecided, 4);
         };
         if from >= to {
-            return Search {
-                outcome: Outcome::Absent,
-                evaluations: 2,
-            };
+            return Search::new(Outcome::Absent, 2);
         }
         let bound = self.searching.bound;
         match self.searching.method {
@@ -187,10 +170,7 @@ impl Job<f64> for First<'_> {
             match search.outcome {
                 Outcome::Absent => {}
                 Outcome::Undecided => {
-                    return Search {
-                        outcome: Outcome::Undecided,
-                        evaluations,
-                    };
+                    return Search::new(Outcome::Undecided, evaluations);
                 }
                 Outcome::Found(root) => {
                     let root = Root {
@@ -203,10 +183,8 @@ impl Job<f64> for First<'_> {
                 }
             }
         }
-        Search {
-            outcome: first.map_or(Outcome::Absent, |root| placed(clipped, &root)),
-            evaluations,
-        }
+        let outcome = first.map_or(Outcome::Absent, |root| placed(clipped, &root));
+        Search::new(outcome, evaluations)
     }
 }
 

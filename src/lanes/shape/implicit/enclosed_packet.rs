@@ -2,12 +2,14 @@
 
 use glam::DVec3;
 
-use super::certified::{Answers, Packet, Tier, WIDTH};
+use super::certified::{Answers, Packet, Tier};
 use super::enclosed::{EnclosedField, Method, Searching, WORK_BOUND};
 use crate::math::affine::Affine;
+use crate::math::double_double::DoubleDouble;
 use crate::math::instructions::Instructions;
 use crate::math::interval::ScalarInterval;
 use crate::math::number::{Number, power_of_two};
+use crate::math::packet::each;
 use crate::math::scalar_lane::One;
 use crate::root::Outcome;
 use crate::shape::implicit::Implicit;
@@ -47,15 +49,12 @@ impl EnclosedPacket {
 
     fn new(implicit: &Implicit, to_world: &Affine, method: Method) -> Result<Self, SingularMatrix> {
         let ladder = Ladder::new(to_world)?;
-        let frame = &ladder.double_double;
-        let row = |row: &[_; 3]| -> f64 {
-            let entries = row.each_ref();
-            let sizes = entries.map(|x: &crate::math::double_double::DoubleDouble| {
-                x.divided_by(&frame.scale).to_f64().abs()
-            });
-            sizes.iter().sum::<f64>() * (1.0 + 8.0 * f64::EPSILON)
+        let row = |row: &[DoubleDouble; 4]| {
+            let sizes = row[..3].iter().map(|x| x.to_f64().abs());
+            sizes.sum::<f64>() * (1.0 + 8.0 * f64::EPSILON)
         };
-        let largest_row = frame.adjugate.iter().map(row).fold(0.0, f64::max);
+        let entries = ladder.double_double.inverse();
+        let largest_row = entries.iter().map(row).fold(0.0, f64::max);
         Ok(Self {
             field: EnclosedField::new(&implicit.field.tape),
             inside: implicit.inside,
@@ -65,10 +64,9 @@ impl EnclosedPacket {
         })
     }
 
-    /// The first hits of a packet.
     pub fn first_hits(&self, instructions: Instructions, packet: &Packet) -> Answers {
         let mut answers = Answers::default();
-        for lane in (0..WIDTH).filter(|lane| packet.active >> lane & 1 == 1) {
+        for lane in each(packet.active) {
             self.answer(instructions, packet, lane, &mut answers);
         }
         answers
@@ -81,11 +79,7 @@ impl EnclosedPacket {
         lane: usize,
         answers: &mut Answers,
     ) {
-        let at = |v: &[[f64; WIDTH]; 3]| DVec3::from_array(v.map(|axis| axis[lane]));
-        let ray = Ray {
-            origin: at(&packet.origin),
-            direction: at(&packet.direction),
-        };
+        let ray = packet.ray(lane);
         let leaving = packet.leaving >> lane & 1 == 1;
         // The point of a hit is rounded some times (distance, product, sum, the way back): 2³
         // units of its largest coordinate, and as much again for the way there.

@@ -25,16 +25,13 @@ pub struct Implicit {
     pub inside: [DVec3; 2],
     /// Where the box cuts the inside of the surface, its faces belong to the surface.
     pub closed: bool,
-    /// How its hits are found.
     pub finder: FinderChoice,
     /// Steps along the clipped ray, for the finder that steps.
     pub steps: u32,
 }
 
-/// How hits on an implicit surface are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FinderChoice {
-    /// What the plan chooses.
     #[default]
     Auto,
     /// Equal steps, a change of sign, bisection: the report's method, which proves nothing.

@@ -1,6 +1,7 @@
 //! An implicit surface in the world and a ray's first hit with it, by the finder of its choice.
 
-use super::baseline::{Stepped, SteppingFinder};
+pub use super::baseline::ImplicitHit;
+use super::baseline::SteppingFinder;
 use super::certified::{Answers, Certified, Packet, Tier, Wish, Workspace};
 use super::enclosed_packet::EnclosedPacket;
 use crate::math::affine::Affine;
@@ -9,19 +10,15 @@ use crate::shape::{Query, Ray, SingularMatrix};
 
 use glam::DVec3;
 
-/// How the hits of a surface are found.
 #[derive(Debug, Clone)]
 pub enum Finder {
     /// Equal steps and bisection: proves nothing.
     SignChange,
-    /// Isolation of polynomial roots.
     Polynomial {
-        /// The surface.
         certified: Box<Certified>,
         /// Whether what double-double leaves undecided is decided exactly.
         exact: bool,
     },
-    /// Interval subdivision.
     Interval(Box<EnclosedPacket>),
     /// Sphere tracing with a proved bound.
     SphereTrace(Box<EnclosedPacket>),
@@ -90,23 +87,14 @@ impl Finder {
             Self::SphereTrace(_) => "sphere-trace",
         }
     }
-
-    /// Whether its answers are proofs.
-    pub fn is_certified(&self) -> bool {
-        !matches!(self, Self::SignChange)
-    }
 }
 
 /// How many rays each arithmetic has decided, over all implicit surfaces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ImplicitTally {
-    /// Certain in f64.
     pub double: u64,
-    /// Certain in double-double.
     pub double_double: u64,
-    /// Decided exactly.
     pub exact: u64,
-    /// Not decided.
     pub undecided: u64,
     /// Answered without proof.
     pub uncertified: u64,
@@ -122,7 +110,6 @@ impl ImplicitTally {
         }
     }
 
-    /// The counts of both together.
     pub fn joined(self, other: Self) -> Self {
         Self {
             double: self.double + other.double,
@@ -138,7 +125,6 @@ impl ImplicitTally {
     }
 }
 
-/// A surface in the world.
 #[derive(Debug, Clone)]
 pub struct PlacedImplicit {
     stepping: SteppingFinder,
@@ -146,28 +132,8 @@ pub struct PlacedImplicit {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ImplicitHit {
-    /// Where on the ray, in units of its direction; finite.
-    pub t: f64,
-    /// World coordinates.
-    pub point: DVec3,
-    /// Unit outward normal in the world; see [`normal`](crate::field::normal) for where the gradient
-    /// vanishes.
-    pub normal: Option<DVec3>,
-    /// Bounds of t; the estimate twice where nothing is proved.
-    pub enclosure: [f64; 2],
-    /// How many times it is a root along the ray, where that is known.
-    pub multiplicity: Option<u32>,
-    /// What has decided; `None` where nothing is proved.
-    pub tier: Option<Tier>,
-}
-
-/// What a finder knows of a ray's first hit.
-#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ImplicitAnswer {
-    /// There is one.
     Found(ImplicitHit),
-    /// There is none.
     Absent,
     /// The finder's arithmetic or its work bound did not suffice.
     Undecided,
@@ -225,16 +191,7 @@ impl PlacedImplicit {
         let Some(answers) = answers else {
             tally.uncertified += 1;
             let stepped = self.stepping.first_hit(query);
-            return stepped.map_or(ImplicitAnswer::Absent, |Stepped { t, point, normal }| {
-                ImplicitAnswer::Found(ImplicitHit {
-                    t,
-                    point,
-                    normal,
-                    enclosure: [t, t],
-                    multiplicity: None,
-                    tier: None,
-                })
-            });
+            return stepped.map_or(ImplicitAnswer::Absent, ImplicitAnswer::Found);
         };
         let decided = (answers.found | answers.absent) & 1 == 1;
         tally.count(decided.then_some(answers.tiers[0]));

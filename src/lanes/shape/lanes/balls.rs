@@ -34,7 +34,6 @@ pub struct Balls<T> {
     largest: T,
     /// Which objects they are; places without a ball repeat the last one.
     pub objects: [u32; MOST],
-    /// How many there are.
     pub count: usize,
 }
 
@@ -143,20 +142,17 @@ impl<T: Scalar> Balls<T> {
         ray: &LaneRay<L>,
         limit: L::Real,
     ) -> L::Int {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let mut near = l.int(0);
-                for place in 0..self.count {
-                    let ball = Same { balls: self, place };
-                    let span = Foot::new(ray, ball.centre(l)).span(l, &ball, ray);
-                    let behind = span.far.high.lt(l.real(0.0));
-                    let apart = span.miss | behind | span.near.low.gt(limit);
-                    near = l.select_int(apart, near, near | l.int(1 << place));
-                }
-                near
-            },
-        )
+        l.vectorize(inlined!(|| {
+            let mut near = l.int(0);
+            for place in 0..self.count {
+                let ball = Same { balls: self, place };
+                let span = Foot::new(ray, ball.centre(l)).span(l, &ball, ray);
+                let behind = span.far.high.lt(l.real(0.0));
+                let apart = span.miss | behind | span.near.low.gt(limit);
+                near = l.select_int(apart, near, near | l.int(1 << place));
+            }
+            near
+        }))
     }
 
     /// Takes one place out of each lane's set of places, which must not be empty.

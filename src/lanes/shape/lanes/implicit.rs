@@ -13,7 +13,8 @@ use crate::field::evaluate::Field;
 use crate::field::normal;
 use crate::math::affine::Affine;
 use crate::math::instructions::Instructions;
-use crate::math::lanes::{Lanes, Mask, Real, Scalar, WIDEST, inlined};
+use crate::math::lanes::{Lanes, Mask, Real, Scalar, WIDEST};
+use crate::math::packet::array;
 use crate::math::vec3::{Rows, Vec3};
 use crate::shape::SingularMatrix;
 use crate::shape::hierarchy::{Bounds, OuterBox};
@@ -24,7 +25,6 @@ use crate::shape::implicit::placed::{Finder, ImplicitTally};
 use super::LaneRay;
 use crate::field::lanes::{LaneField, Scratch, each};
 
-/// An implicit surface placed in the world.
 #[derive(Debug, Clone)]
 pub struct LaneImplicit<T> {
     field: LaneField<T>,
@@ -67,7 +67,6 @@ pub struct FieldQuestion<'a, L: Lanes> {
     pub start: StartSign<L>,
     /// Hits count before this.
     pub limit: L::Real,
-    /// The rays whose answers count.
     pub active: L::Mask,
 }
 
@@ -100,7 +99,6 @@ impl<T: Scalar> LaneImplicit<T> {
         })
     }
 
-    /// How hits are found.
     pub fn finder(&self) -> &Finder {
         &self.finder
     }
@@ -116,35 +114,32 @@ impl<T: Scalar> LaneImplicit<T> {
         question: &FieldQuestion<'_, L>,
         tally: &mut ImplicitTally,
     ) -> (L::Real, L::Mask) {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let FieldQuestion {
-                    ray,
-                    start,
-                    limit,
-                    active,
-                } = *question;
-                let inverse = ray.direction.reciprocal(l);
-                let active = active & self.bounds.meets(l, ray.origin, inverse, limit);
-                if !active.any() {
-                    return (limit, active);
+        l.vectorize(inlined!(|| {
+            let FieldQuestion {
+                ray,
+                start,
+                limit,
+                active,
+            } = *question;
+            let inverse = ray.direction.reciprocal(l);
+            let active = active & self.bounds.meets(l, ray.origin, inverse, limit);
+            if !active.any() {
+                return (limit, active);
+            }
+            let (t, found) = match &self.finder {
+                Finder::SignChange => {
+                    tally.uncertified += u64::from(active.bits().count_ones());
+                    self.first_change(l, ray, start, active)
                 }
-                let (t, found) = match &self.finder {
-                    Finder::SignChange => {
-                        tally.uncertified += u64::from(active.bits().count_ones());
-                        self.first_change(l, ray, start, active)
-                    }
-                    finder => {
-                        let rays = PacketRays::new(l, ray);
-                        let bits = [active.bits(), start.on.bits()];
-                        let (t, found) = rays.ask(l.instructions(), finder, bits, L::COUNT, tally);
-                        (l.load(&t), l.mask_from_bits(found))
-                    }
-                };
-                (t, found & t.lt(limit))
-            },
-        )
+                finder => {
+                    let rays = PacketRays::new(l, ray);
+                    let bits = [active.bits(), start.on.bits()];
+                    let (t, found) = rays.ask(l.instructions(), finder, bits, L::COUNT, tally);
+                    (l.load(&t), l.mask_from_bits(found))
+                }
+            };
+            (t, found & t.lt(limit))
+        }))
     }
 
     /// Outward normals at object points that are met in these directions: the gradient, of any
@@ -216,88 +211,77 @@ impl<T: Scalar> LaneImplicit<T> {
         start: StartSign<L>,
         active: L::Mask,
     ) -> (L::Real, L::Mask) {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let o = self.inverse.point(l, ray.origin);
-                let d = self.inverse.vector(l, ray.direction);
-                let zero = l.real(0.0);
-                let (mut near, mut far) = (zero, l.real(f64::INFINITY));
-                for (o, d, c, h) in [
-                    (o.x, d.x, self.centre[0], self.half[0]),
-                    (o.y, d.y, self.centre[1], self.half[1]),
-                    (o.z, d.z, self.centre[2], self.half[2]),
-                ] {
-                    let inverse = l.real(1.0) / d;
-                    let (c, h) = (l.splat(c), l.splat(h));
-                    let (t1, t2) = ((c - h - o) * inverse, (c + h - o) * inverse);
-                    near = t1.min(t2).max(near);
-                    far = t1.max(t2).min(far);
-                }
-                let clipped = active & near.lt(far);
-                let mut found = l.mask(false);
-                let (mut low, mut high) = (near, near);
-                if !clipped.any() {
-                    return (near, found);
-                }
-                let mut scratch = Scratch::<L, 1>::default();
-                let mut value = inlined(
-                    #[inline(always)]
-                    |p| self.field.values(l, [p], &mut scratch)[0],
+        l.vectorize(inlined!(|| {
+            let o = self.inverse.point(l, ray.origin);
+            let d = self.inverse.vector(l, ray.direction);
+            let zero = l.real(0.0);
+            let (mut near, mut far) = (zero, l.real(f64::INFINITY));
+            for (o, d, c, h) in [
+                (o.x, d.x, self.centre[0], self.half[0]),
+                (o.y, d.y, self.centre[1], self.half[1]),
+                (o.z, d.z, self.centre[2], self.half[2]),
+            ] {
+                let inverse = l.real(1.0) / d;
+                let (c, h) = (l.splat(c), l.splat(h));
+                let (t1, t2) = ((c - h - o) * inverse, (c + h - o) * inverse);
+                near = t1.min(t2).max(near);
+                far = t1.max(t2).min(far);
+            }
+            let clipped = active & near.lt(far);
+            let mut found = l.mask(false);
+            let (mut low, mut high) = (near, near);
+            if !clipped.any() {
+                return (near, found);
+            }
+            let mut scratch = Scratch::<L, 1>::default();
+            let mut value = inlined!(|p| self.field.values(l, [p], &mut scratch)[0]);
+            let mut scratch = Scratch::<L, STRIDE>::default();
+            let step = (far - near) * l.real(1.0 / f64::from(self.steps));
+            let mut negative = value(o.along(d, near)).lt(zero);
+            // On the surface the field's sign at the start is rounding noise, its sign after it known.
+            negative = (negative & !start.on) | (start.inward & start.on);
+            let mut t = near;
+            for first in (1..=self.steps).step_by(STRIDE) {
+                let steps: [L::Real; STRIDE] = each(
+                    zero,
+                    inlined!(|i: usize| {
+                        // Beyond the last step it is asked again, which changes nothing.
+                        let number = (first + i as u32).min(self.steps);
+                        step.mul_add(l.real(f64::from(number)), near)
+                    }),
                 );
-                let mut scratch = Scratch::<L, STRIDE>::default();
-                let step = (far - near) * l.real(1.0 / f64::from(self.steps));
-                let mut negative = value(o.along(d, near)).lt(zero);
-                // On the surface the field's sign at the start is rounding noise, its sign after it known.
-                negative = (negative & !start.on) | (start.inward & start.on);
-                let mut t = near;
-                for first in (1..=self.steps).step_by(STRIDE) {
-                    let steps: [L::Real; STRIDE] = each(
-                        zero,
-                        #[inline(always)]
-                        |i| {
-                            // Beyond the last step it is asked again, which changes nothing.
-                            let number = (first + i as u32).min(self.steps);
-                            step.mul_add(l.real(f64::from(number)), near)
-                        },
-                    );
-                    let points: [Vec3<L::Real>; STRIDE] = each(
-                        o,
-                        #[inline(always)]
-                        |i: usize| o.along(d, steps[i]),
-                    );
-                    let values = self.field.values(l, points, &mut scratch);
-                    for (next, value) in steps.into_iter().zip(values) {
-                        let change_to = value.lt(zero);
-                        let changed =
-                            ((change_to & !negative) | (negative & !change_to)) & clipped & !found;
-                        low = l.select(changed, t, low);
-                        high = l.select(changed, next, high);
-                        found = found | changed;
-                        t = next;
-                    }
-                    if !(clipped & !found).any() {
-                        break;
-                    }
+                let points: [Vec3<L::Real>; STRIDE] =
+                    each(o, inlined!(|i: usize| o.along(d, steps[i])));
+                let values = self.field.values(l, points, &mut scratch);
+                for (next, value) in steps.into_iter().zip(values) {
+                    let change_to = value.lt(zero);
+                    let changed =
+                        ((change_to & !negative) | (negative & !change_to)) & clipped & !found;
+                    low = l.select(changed, t, low);
+                    high = l.select(changed, next, high);
+                    found = found | changed;
+                    t = next;
                 }
-                if !found.any() {
-                    return (near, found);
+                if !(clipped & !found).any() {
+                    break;
                 }
-                // Half the step as often as the significand has bits.
-                for _ in 0..L::UNIFORM_BITS.max(24) {
-                    let middle = (low + high) * l.real(0.5);
-                    let inside = value(o.along(d, middle)).lt(zero);
-                    let same = (inside & negative) | (!inside & !negative);
-                    low = l.select(same, middle, low);
-                    high = l.select(same, high, middle);
-                }
-                ((low + high) * l.real(0.5), found)
-            },
-        )
+            }
+            if !found.any() {
+                return (near, found);
+            }
+            // Half the step as often as the significand has bits.
+            for _ in 0..L::UNIFORM_BITS.max(24) {
+                let middle = (low + high) * l.real(0.5);
+                let inside = value(o.along(d, middle)).lt(zero);
+                let same = (inside & negative) | (!inside & !negative);
+                low = l.select(same, middle, low);
+                high = l.select(same, high, middle);
+            }
+            ((low + high) * l.real(0.5), found)
+        }))
     }
 }
 
-/// The rays of a packet as memory.
 struct PacketRays<T> {
     origin: [[T; WIDEST]; 3],
     direction: [[T; WIDEST]; 3],
@@ -306,18 +290,7 @@ struct PacketRays<T> {
 impl<T: Scalar> PacketRays<T> {
     #[inline(always)]
     fn new<L: Lanes<Scalar = T>>(l: L, ray: &LaneRay<L>) -> Self {
-        let stored = inlined(
-            #[inline(always)]
-            |x: L::Real| {
-                let mut to = [T::default(); WIDEST];
-                l.store(x, &mut to);
-                to
-            },
-        );
-        let vector = inlined(
-            #[inline(always)]
-            |v: Vec3<L::Real>| [stored(v.x), stored(v.y), stored(v.z)],
-        );
+        let vector = inlined!(|v: Vec3<L::Real>| [array(l, v.x), array(l, v.y), array(l, v.z)]);
         Self {
             origin: vector(ray.origin),
             direction: vector(ray.direction),

@@ -32,7 +32,6 @@ pub struct LaneRay<L: Lanes> {
 }
 
 impl<L: Lanes> LaneRay<L> {
-    /// A ray with its extent.
     #[inline(always)]
     pub fn new(l: L, origin: Vec3<L::Real>, direction: Vec3<L::Real>) -> Self {
         Self {
@@ -44,7 +43,6 @@ impl<L: Lanes> LaneRay<L> {
     }
 }
 
-/// An interval that holds a number.
 #[derive(Clone, Copy)]
 pub struct Enclosure<L: Lanes> {
     pub low: L::Real,
@@ -58,6 +56,31 @@ impl<L: Lanes> Enclosure<L> {
         Self {
             low: x - error,
             high: x + error,
+        }
+    }
+
+    #[inline(always)]
+    pub fn later(self, other: Self) -> Self {
+        Self {
+            low: self.low.max(other.low),
+            high: self.high.max(other.high),
+        }
+    }
+
+    #[inline(always)]
+    pub fn earlier(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.min(other.high),
+        }
+    }
+
+    /// With x itself in the lanes of a mask.
+    #[inline(always)]
+    pub fn replaced(self, l: L, mask: L::Mask, x: L::Real) -> Self {
+        Self {
+            low: l.select(mask, x, self.low),
+            high: l.select(mask, x, self.high),
         }
     }
 }
@@ -92,14 +115,12 @@ impl<L: Lanes> Span<L> {
     }
 }
 
-/// A placed shape as lanes use it.
 #[derive(Debug, Clone, Copy)]
 pub struct LaneShape<T> {
     /// Which shape; implicit surfaces are intersected elsewhere and place nothing here.
     pub kind: Option<ShapeKind>,
     /// World (about the camera) → canonical coordinates.
     pub inverse: Rows<T>,
-    /// Canonical coordinates → world.
     pub forward: Rows<T>,
     /// The planes of each canonical coordinate.
     planes: [Planes<T>; 3],
@@ -165,7 +186,6 @@ impl<T: Scalar> LaneShape<T> {
         (ray.extent.mul_add(direction, l.splat(offset)), direction)
     }
 
-    /// The ball that this shape is, if it is one.
     pub fn ball(&self) -> Option<&Ball<T>> {
         match self.kind {
             Some(ShapeKind::Sphere) => self.ball.as_ref(),

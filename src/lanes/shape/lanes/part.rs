@@ -17,10 +17,8 @@ pub enum PartKind {
     Other,
 }
 
-/// A piece of a shape's surface.
 #[derive(Debug, Clone, Copy)]
 pub struct Part<T> {
-    /// What the numbers mean.
     pub kind: PartKind,
     /// Unit normal (outward, or +z of flat shapes), or the centre.
     pub vector: [T; 3],
@@ -31,7 +29,6 @@ pub struct Part<T> {
 }
 
 impl<T: Scalar> Part<T> {
-    /// A part of the kind [`PartKind::Other`].
     pub fn other() -> Self {
         let zero = T::default();
         Self {
@@ -43,7 +40,6 @@ impl<T: Scalar> Part<T> {
     }
 }
 
-/// The parts that lanes have hit.
 #[derive(Clone, Copy)]
 pub struct Outline<L: Lanes> {
     /// Unit normals, or centres.
@@ -52,7 +48,6 @@ pub struct Outline<L: Lanes> {
     pub level: L::Real,
     /// Half the distances of pairs of faces, else 0.
     pub half: L::Real,
-    /// Where the part is a pair of faces.
     pub faces: L::Mask,
     pub balls: L::Mask,
 }

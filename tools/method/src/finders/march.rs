@@ -50,7 +50,8 @@ impl<T: Scalar> March<T> {
             let value = self.tape.evaluate(&numbers, &mut results);
             value.unwrap_or_default()
         };
-        let t = first_change(value, [near, far], self.steps);
+        let middle = |[low, high]: [T; 2]| low + (high - low) * T::from_f64(0.5);
+        let t = first_change(value, [near, far], self.steps).map(middle);
         t.map_or(Answer::Miss, |t| Answer::Hit(t.to_f64()))
     }
 

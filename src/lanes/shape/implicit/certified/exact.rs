@@ -21,10 +21,8 @@ struct IntegerRay {
     scale: BigInt,
 }
 
-/// What the ray's start is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum ExactStart {
-    /// Nothing is known.
     Free,
     /// A point of the surface, rounded with this unit roundoff.
     OnSurface(f64),
@@ -237,7 +235,7 @@ pub(super) fn order_of_vanishing(
 }
 
 fn first_other_than_zero<N: Whole>(powers: &[N]) -> Option<usize> {
-    powers.iter().position(|c| !c.vanishes())
+    powers.iter().position(|c| !c.is_zero())
 }
 
 fn trailing<'a>(numbers: impl Iterator<Item = &'a BigInt>) -> u64 {

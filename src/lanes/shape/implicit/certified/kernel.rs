@@ -6,9 +6,8 @@ use crate::field::program::Step;
 use crate::math::instructions::DoubleLanes;
 use crate::math::lanes::{Mask, Real};
 use crate::math::words::{Pair, Plain, Row, Word};
-use crate::root::bernstein::{MOST, Problem, Roots, first_roots};
+use crate::root::bernstein::{MOST, Question, Roots, first_roots};
 
-/// A clipped packet.
 struct Clipped<L: DoubleLanes> {
     near: L::Real,
     far: L::Real,
@@ -24,33 +23,30 @@ struct Clipped<L: DoubleLanes> {
 /// The first hits, as far as this arithmetic can tell; as many rays at once as there are lanes.
 #[inline(never)]
 pub(super) fn first_hits<L: DoubleLanes, W: Solving<L>>(l: L, ask: Ask<'_>) -> Answers {
-    l.vectorize(
-        #[inline(always)]
-        || {
-            let Ask { placed, packet, .. } = ask;
-            let rows = ask.rows;
-            let mut answers = Answers::default();
-            for at in (0..WIDTH).step_by(L::COUNT) {
-                let asked = l.mask_from_bits(ask.asked >> at);
-                if L::COUNT < WIDTH && !asked.any() {
-                    continue;
-                }
-                let inverse = &placed.inverse[W::ROWS - 1];
-                let local = Local::<L, W>::new(l, inverse, packet, at);
-                let clipped = local.clip(l, placed, inverse, packet, at);
-                let mut all = Combined::new(l, asked, &clipped);
-                if all.open.any() {
-                    let ends = local.ends(l, &clipped);
-                    for factor in &placed.factors {
-                        expand::<L, W>(l, factor, &ends, rows);
-                        all.join::<W>(l, factor, (packet, at), &clipped, rows);
-                    }
-                }
-                all.answer(l, placed, &local, &clipped, at, &mut answers);
+    l.vectorize(inlined!(|| {
+        let Ask { placed, packet, .. } = ask;
+        let rows = ask.rows;
+        let mut answers = Answers::default();
+        for at in (0..WIDTH).step_by(L::COUNT) {
+            let asked = l.mask_from_bits(ask.asked >> at);
+            if L::COUNT < WIDTH && !asked.any() {
+                continue;
             }
-            answers
-        },
-    )
+            let inverse = &placed.inverse[W::ROWS - 1];
+            let local = Local::<L, W>::new(l, inverse, packet, at);
+            let clipped = local.clip(l, placed, inverse, packet, at);
+            let mut all = Combined::new(l, asked, &clipped);
+            if all.open.any() {
+                let ends = local.ends(l, &clipped);
+                for factor in &placed.factors {
+                    expand::<L, W>(l, factor, &ends, rows);
+                    all.join::<W>(l, factor, (packet, at), &clipped, rows);
+                }
+            }
+            all.answer(l, placed, &local, &clipped, at, &mut answers);
+        }
+        answers
+    }))
 }
 
 /// Rays in object coordinates.
@@ -77,14 +73,8 @@ impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
             l.load(&d[2][at..]),
         ];
         let mut local = Self {
-            origin: o.map(
-                #[inline(always)]
-                |x| W::real(l, x),
-            ),
-            direction: d.map(
-                #[inline(always)]
-                |x| W::real(l, x),
-            ),
+            origin: o.map(inlined!(|x| W::real(l, x))),
+            direction: d.map(inlined!(|x| W::real(l, x))),
             extent: o[0].abs().max(o[1].abs()).max(o[2].abs()),
             length: d[0].abs().max(d[1].abs()).max(d[2].abs()),
         };
@@ -115,14 +105,8 @@ impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
     ) -> Clipped<L> {
         let zero = l.real(0.0);
         let tiny = l.real(f64::MIN_POSITIVE * 1e16);
-        let o = self.origin.map(
-            #[inline(always)]
-            |x| x.head(),
-        );
-        let d = self.direction.map(
-            #[inline(always)]
-            |x| x.head(),
-        );
+        let o = self.origin.map(inlined!(|x: W| x.head()));
+        let d = self.direction.map(inlined!(|x: W| x.head()));
         let faces = placed.outer.lower.iter().chain(&placed.outer.upper);
         let face = l.real(faces.fold(0.0, |a: f64, b| a.max(b.abs())));
         let reach = o[0].abs().max(o[1].abs()).max(o[2].abs()) + face;
@@ -301,48 +285,25 @@ fn square<L: DoubleLanes, W: Word<L>>(
     }
 }
 
-/// What is asked of a factor's coefficients.
-pub(super) struct Question<L: DoubleLanes> {
-    error: L::Real,
-    start_error: L::Real,
-    accounted: f64,
-    roots_at_end: usize,
-    on_root: L::Mask,
-    active: L::Mask,
+/// In a function of its own for M coefficients, so that its numbers can stay in registers, or in one
+/// for up to [`MOST`].
+#[inline(never)]
+fn ask<L: DoubleLanes, W: Word<L>, const M: usize>(
+    l: L,
+    question: &Question<L>,
+    rows: &[Row],
+    count: usize,
+) -> Roots<L> {
+    l.vectorize(inlined!(|| {
+        let count = if M == MOST { count } else { M };
+        let mut coefficients = [W::constant(l, [0.0; 2]); M];
+        for (i, c) in coefficients[..count].iter_mut().enumerate() {
+            *c = W::load(l, rows, i);
+        }
+        first_roots(l, &coefficients, count, question)
+    }))
 }
 
-impl<L: DoubleLanes> Question<L> {
-    /// In a function of its own for M coefficients, so that its numbers can stay in registers, or
-    /// in one for up to [`MOST`].
-    #[inline(never)]
-    fn ask<W: Word<L>, const M: usize>(&self, l: L, rows: &[Row], count: usize) -> Roots<L> {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let count = if M == MOST { count } else { M };
-                let mut coefficients = [W::constant(l, [0.0; 2]); M];
-                for (i, c) in coefficients[..count].iter_mut().enumerate() {
-                    *c = W::load(l, rows, i);
-                }
-                first_roots(
-                    l,
-                    &Problem {
-                        coefficients,
-                        count,
-                        error: self.error,
-                        on_root: self.on_root,
-                        start_error: self.start_error,
-                        roots_at_end: self.roots_at_end,
-                        accounted: self.accounted,
-                        active: self.active,
-                    },
-                )
-            },
-        )
-    }
-}
-
-/// An arithmetic with a solver.
 pub(super) trait Solving<L: DoubleLanes>: Word<L> {
     /// The first roots of polynomials with `count` coefficients.
     fn solve(l: L, question: &Question<L>, rows: &[Row], count: usize) -> Roots<L>;
@@ -352,11 +313,11 @@ impl<L: DoubleLanes> Solving<L> for Plain<L> {
     #[inline(always)]
     fn solve(l: L, question: &Question<L>, rows: &[Row], count: usize) -> Roots<L> {
         match count {
-            3 => question.ask::<Self, 3>(l, rows, count),
-            5 => question.ask::<Self, 5>(l, rows, count),
-            7 => question.ask::<Self, 7>(l, rows, count),
-            9 => question.ask::<Self, 9>(l, rows, count),
-            _ => question.ask::<Self, MOST>(l, rows, count),
+            3 => ask::<_, Self, 3>(l, question, rows, count),
+            5 => ask::<_, Self, 5>(l, question, rows, count),
+            7 => ask::<_, Self, 7>(l, question, rows, count),
+            9 => ask::<_, Self, 9>(l, question, rows, count),
+            _ => ask::<_, Self, MOST>(l, question, rows, count),
         }
     }
 }
@@ -365,7 +326,7 @@ impl<L: DoubleLanes> Solving<L> for Plain<L> {
 impl<L: DoubleLanes> Solving<L> for Pair<L> {
     #[inline(always)]
     fn solve(l: L, question: &Question<L>, rows: &[Row], count: usize) -> Roots<L> {
-        question.ask::<Self, MOST>(l, rows, count)
+        ask::<_, Self, MOST>(l, question, rows, count)
     }
 }
 

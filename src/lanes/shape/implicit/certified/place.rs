@@ -4,12 +4,12 @@ use glam::DVec3;
 
 use crate::field::outer::outer_box;
 use crate::field::program::Program;
-use crate::field::program::bounds::{FieldBounds, PLAIN, Rounding, binomial, bounds};
+use crate::field::program::bounds::{Bound, PLAIN, Rounding, binomial, bounds};
 use crate::field::tape::Tape;
 use crate::math::affine::Affine;
 use crate::math::double_double::DoubleDouble;
 use crate::math::exact::Exact;
-use crate::math::number::{Number, dot};
+use crate::math::number::Number;
 use crate::root::bernstein::{DEGREES, split_error};
 use crate::shape::SingularMatrix;
 use crate::shape::ladder::Ladder;
@@ -21,23 +21,19 @@ const PAIR: Rounding = Rounding {
     parts: 2,
 };
 
-/// Faces of a box, by axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
-    /// Lower faces.
     pub lower: [f64; 3],
-    /// Upper faces.
     pub upper: [f64; 3],
 }
 
 #[derive(Debug, Clone)]
 pub(super) struct FactorField {
     pub program: Program,
-    /// Its power in the field.
     pub power: u32,
     /// 1 / C(n, i), each as a sum of two f64.
     pub reciprocals: Vec<[f64; 2]>,
-    pub bounds: [FieldBounds; 2],
+    pub bounds: [Bound; 2],
     /// Bound of the value at a root as f64 finds it.
     pub root_error: f64,
     /// Part of the solver's rounding that is accounted for: 1.
@@ -59,7 +55,6 @@ pub(super) struct Inverse {
     pub largest_row: f64,
 }
 
-/// A polynomial surface in the world.
 #[derive(Debug, Clone)]
 pub struct Certified {
     pub(super) factors: Vec<FactorField>,
@@ -119,20 +114,14 @@ impl Certified {
         let (clip, outer) = (limits(clip), limits(outer));
         let half = (0..3).map(|i| (outer.upper[i] - outer.lower[i]) / 2.0);
         let margin = MARGIN * half.fold(0.0, f64::max);
-        let free = |face: f64, at: f64| (at - face).abs() > margin;
+        let kept = |face: f64, at: f64, free: f64| {
+            let is_free = (at - face).abs() > margin;
+            if is_free { free } else { face }
+        };
+        let (low, high) = (f64::NEG_INFINITY, f64::INFINITY);
         let cut = Limits {
-            lower: [0, 1, 2].map(|i| {
-                let free = free(clip.lower[i], outer.lower[i]);
-                if free {
-                    f64::NEG_INFINITY
-                } else {
-                    clip.lower[i]
-                }
-            }),
-            upper: [0, 1, 2].map(|i| {
-                let free = free(clip.upper[i], outer.upper[i]);
-                if free { f64::INFINITY } else { clip.upper[i] }
-            }),
+            lower: [0, 1, 2].map(|i| kept(clip.lower[i], outer.lower[i], low)),
+            upper: [0, 1, 2].map(|i| kept(clip.upper[i], outer.upper[i], high)),
         };
         let is_cut = cut.lower.iter().chain(&cut.upper).any(|x| x.is_finite());
         let reach = [0, 1, 2].map(|i| outer.lower[i].abs().max(outer.upper[i].abs()) + margin);
@@ -195,16 +184,6 @@ impl FactorField {
 }
 
 impl Inverse {
-    /// The entries as double-double numbers with bounds.
-    fn entries(ladder: &Ladder) -> [[DoubleDouble; 4]; 3] {
-        let frame = &ladder.double_double;
-        frame.adjugate.each_ref().map(|row| {
-            let entry = |j: usize| row[j].divided_by(&frame.scale);
-            let shift = dot(row, &frame.translation).negated();
-            [entry(0), entry(1), entry(2), shift.divided_by(&frame.scale)]
-        })
-    }
-
     /// Whether products with these entries are exact, and nothing is added: one entry of a row is
     /// a power of two, the others are zero.
     fn is_exact(ladder: &Ladder, entries: &[[DoubleDouble; 4]; 3]) -> bool {
@@ -233,7 +212,7 @@ impl Inverse {
     }
 
     fn new(ladder: &Ladder, unit: f64, own: impl Fn(&DoubleDouble) -> f64, parts: usize) -> Self {
-        let entries = Self::entries(ladder);
+        let entries = ladder.double_double.inverse();
         let rows = entries.each_ref().map(|row| {
             row.each_ref().map(|entry| {
                 let [high, low] = entry.parts();

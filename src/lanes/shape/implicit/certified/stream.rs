@@ -1,6 +1,7 @@
 //! Many packets: what f64 leaves undecided waits until a packet of it is full.
 
-use super::{Answers, Certified, Packet, Tier, WIDTH, Wish, Workspace, lanes};
+use super::{Answers, Certified, Packet, Tier, WIDTH, Wish, Workspace};
+use crate::math::packet::each;
 
 /// Rays that wait, and where they come from.
 #[derive(Default)]
@@ -37,7 +38,7 @@ impl Certified {
             let first = self.in_lanes(packet, packet.active, false, workspace);
             let again = first.unfinished(packet, wish);
             answers.push(first);
-            for lane in lanes(again) {
+            for lane in each(again) {
                 queue.push(packets, index, lane);
                 if queue.from.len() == WIDTH {
                     self.empty(&mut queue, packets, &mut answers, wish, workspace);
@@ -48,7 +49,6 @@ impl Certified {
         answers
     }
 
-    /// Decides what waits.
     fn empty(
         &self,
         queue: &mut Queue,

@@ -1,8 +1,8 @@
 //! Intervals in lanes.
 
 use etalon_lanes::math::instructions::{DoubleLanes, Instructions, Job};
-use etalon_lanes::math::interval::{self, Domain, Interval};
-use etalon_lanes::math::lanes::Real;
+use etalon_lanes::math::interval::{Domain, Interval};
+use etalon_lanes::math::lanes::{Mask, Real};
 use etalon_lanes::math::packet::each;
 
 /// Bounds of many intervals.
@@ -156,7 +156,7 @@ impl<J: OfIntervals> Job<f64> for Each<'_, J> {
             let c = self.job.of(a, b, &mut domain);
             l.store(c.low, &mut bounds.low[i..]);
             l.store(c.high, &mut bounds.high[i..]);
-            for j in each(interval::bits(domain.broken)) {
+            for j in each(domain.broken.bits()) {
                 broken[i + j] = true;
             }
         }
