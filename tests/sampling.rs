@@ -550,8 +550,9 @@ fn standard_errors_are_honest() {
         let value = f64::from(u8::from(numbers[0] < p));
         film.add(pixel as usize, i..i + 1, &[[value, 2.0 * value, 1.0]]);
     }
+    let counts = film.counts(spp);
     let estimates: Vec<_> = (0..pixels as usize)
-        .map(|i| film.estimate(i, spp, |xyz| xyz))
+        .map(|i| film.estimate(i, &counts, |xyz| xyz))
         .collect();
     let squares: Vec<f64> = estimates
         .iter()
@@ -571,7 +572,7 @@ fn standard_errors_are_honest() {
     // A single replicate has no standard error, and says so.
     let mut film = Pixels::new(1, Replicates::Fixed(1));
     film.add(0, 0..1, &[[1.0; 3]]);
-    assert!(film.estimate(0, 1, |xyz| xyz).standard_error[0].is_nan());
+    assert!(film.estimate(0, &[1.0], |xyz| xyz).standard_error[0].is_nan());
 }
 
 #[test]

@@ -33,20 +33,18 @@ impl<const N: usize> Estimate<N> {
         standard_error: [f64::NAN; N],
     };
 
-    /// From the sums over the samples of each replicate, after `samples` samples in all, channels
+    /// From the sums over the samples of each replicate, which are as many as `counts` says, channels
     /// mapped by `channels`.
     ///
     /// With nᵣ samples in replicate r and m its mean, the squared standard error is
     /// Σ nᵣ (mᵣ − m)²/((K − 1) Σ nᵣ), unbiased where a replicate's variance falls as 1/nᵣ, and for
     /// any law where all have the same number.
     pub fn new<'a>(
-        replicates: Replicates,
-        samples: u32,
+        counts: &[f64],
         sums: impl Iterator<Item = &'a [f64; N]> + Clone,
         channels: impl Fn([f64; N]) -> [f64; N],
     ) -> Self {
-        let count = replicates.count(samples);
-        let total = f64::from(samples);
+        let total: f64 = counts.iter().sum();
         let mut sum = [0.0; N];
         for replicate in sums.clone() {
             for (sum, value) in sum.iter_mut().zip(replicate) {
@@ -55,17 +53,15 @@ impl<const N: usize> Estimate<N> {
         }
         let mean = channels(sum.map(|s| s / total));
         let mut squares = [0.0; N];
-        for (r, replicate) in sums.enumerate().take(count as usize) {
-            let own = f64::from(replicates.samples_of(r as u32, samples));
+        for (own, replicate) in counts.iter().zip(sums) {
             let own_mean = channels(replicate.map(|s| s / own));
             for ((square, own_mean), mean) in squares.iter_mut().zip(own_mean).zip(mean) {
                 *square += own * (own_mean - mean) * (own_mean - mean);
             }
         }
-        let freedom = if count > 1 {
-            f64::from(count - 1)
-        } else {
-            f64::NAN
+        let freedom = match counts {
+            [] | [_] => f64::NAN,
+            _ => counts.len() as f64 - 1.0,
         };
         Self {
             mean,
@@ -126,28 +122,28 @@ impl Pixels {
         self.replicates.count(samples)
     }
 
-    /// Mean of a pixel's samples in each of its replicates, after `samples` samples in all.
-    pub fn replicate_means(
-        &self,
-        pixel: usize,
-        samples: u32,
-    ) -> impl Iterator<Item = [f64; 3]> + '_ {
-        let count = self.replicates.count(samples) as usize;
-        let sums = &self.sums[pixel * self.slots..][..self.slots];
-        (0..).zip(sums).take(count).map(move |(replicate, sum)| {
-            let own = f64::from(self.replicates.samples_of(replicate, samples));
-            sum.map(|s| s / own)
-        })
+    /// Samples of each replicate of every pixel after `samples` samples.
+    pub fn counts(&self, samples: u32) -> Vec<f64> {
+        self.replicates.counts(samples)
     }
 
-    /// Mean and standard error of a pixel after `samples` samples, channels mapped by `channels`.
+    /// Mean of a pixel's samples in each of its replicates, which are as many as `counts` says.
+    pub fn replicate_means(&self, pixel: usize, counts: &[f64]) -> impl Iterator<Item = [f64; 3]> {
+        let sums = &self.sums[pixel * self.slots..][..self.slots];
+        sums.iter()
+            .zip(counts)
+            .map(|(sum, own)| sum.map(|s| s / own))
+    }
+
+    /// Mean and standard error of a pixel, channels mapped by `channels`; its replicates have as many
+    /// samples as [`counts`](Self::counts) says.
     pub fn estimate(
         &self,
         pixel: usize,
-        samples: u32,
+        counts: &[f64],
         channels: impl Fn([f64; 3]) -> [f64; 3],
     ) -> Estimate {
         let sums = &self.sums[pixel * self.slots..][..self.slots];
-        Estimate::new(self.replicates, samples, sums.iter(), channels)
+        Estimate::new(counts, sums.iter(), channels)
     }
 }

@@ -158,11 +158,12 @@ impl Bins {
         }
     }
 
-    /// Radiance of a pixel in a bin after `samples` samples, W·m⁻²·sr⁻¹·nm⁻¹.
-    pub fn estimate(&self, pixel: usize, bin: usize, samples: u32) -> Estimate<1> {
+    /// Radiance of a pixel in a bin, W·m⁻²·sr⁻¹·nm⁻¹; its replicates have as many samples as `counts`
+    /// says.
+    pub fn estimate(&self, pixel: usize, bin: usize, counts: &[f64]) -> Estimate<1> {
         let count = self.shares.bins;
         let sums = &self.sums[pixel * self.slots * count..][..self.slots * count];
         let of_bin = sums[bin..].iter().step_by(count);
-        Estimate::new(self.replicates, samples, of_bin, |radiance| radiance)
+        Estimate::new(counts, of_bin, |radiance| radiance)
     }
 }

@@ -195,10 +195,11 @@ impl Rendered {
     /// for.
     pub fn bin(&self, bin: usize) -> Option<Vec<pixels::Estimate<1>>> {
         let wanted = self.tiles.iter().all(|tile| tile.bins.is_some());
+        let counts = self.counts();
         let estimate = |tile: &Tile, pixel: usize| {
             let bins = tile.bins.as_ref();
             bins.map_or(pixels::Estimate::UNKNOWN, |bins| {
-                bins.estimate(pixel, bin, self.samples)
+                bins.estimate(pixel, bin, &counts)
             })
         };
         wanted.then(|| self.image(pixels::Estimate::UNKNOWN, estimate))
@@ -207,8 +208,9 @@ impl Rendered {
     /// Luminance of every pixel, row by row, in each of its replicates.
     pub fn replicate_luminances(&self) -> Vec<Vec<f64>> {
         let mut image = vec![Vec::new(); self.window.pixels()];
+        let counts = self.counts();
         self.place(|index, tile, pixel| {
-            let means = tile.pixels.replicate_means(pixel, self.samples);
+            let means = tile.pixels.replicate_means(pixel, &counts);
             image[index] = means.map(|xyz| xyz[1]).collect();
         });
         image
@@ -220,9 +222,16 @@ impl Rendered {
         tile.map_or(0, |tile| tile.pixels.replicates(self.samples))
     }
 
+    /// Samples of each replicate, the same for every pixel.
+    fn counts(&self) -> Vec<f64> {
+        let tile = self.tiles.first();
+        tile.map_or_else(Vec::new, |tile| tile.pixels.counts(self.samples))
+    }
+
     fn estimates(&self, channels: impl Fn([f64; 3]) -> [f64; 3] + Copy) -> Vec<pixels::Estimate> {
+        let counts = self.counts();
         self.image(pixels::Estimate::UNKNOWN, |tile, pixel| {
-            tile.pixels.estimate(pixel, self.samples, channels)
+            tile.pixels.estimate(pixel, &counts, channels)
         })
     }
 
@@ -288,11 +297,9 @@ impl Rendered {
     /// standard error is NaN with a single replicate.
     pub fn mean_luminance(&self) -> Estimate {
         // Tiles side by side, then their sums in order: the same bits on any number of threads.
-        let sums: Vec<[f64; 3]> = self
-            .tiles
-            .par_iter()
-            .map(|tile| self.luminance(tile))
-            .collect();
+        let counts = self.counts();
+        let tiles = self.tiles.par_iter();
+        let sums: Vec<[f64; 3]> = tiles.map(|tile| luminance(tile, &counts)).collect();
         let [mut sum, mut variance, mut squares] = [0.0; 3];
         for [own_sum, own_variance, own_squares] in sums {
             sum += own_sum;
@@ -301,19 +308,6 @@ impl Rendered {
         }
         let freedom = f64::from(self.replicates()) - 1.0;
         Estimate::of_sums(self.window.pixels(), sum, [variance, squares], freedom)
-    }
-
-    /// Σ Y, Σ v and Σ v² of a tile's pixels, where v is the squared standard error of Y.
-    fn luminance(&self, tile: &Tile) -> [f64; 3] {
-        let [mut sum, mut variance, mut squares] = [0.0; 3];
-        for pixel in 0..tile.window.pixels() {
-            let estimate = tile.pixels.estimate(pixel, self.samples, |xyz| xyz);
-            let own = estimate.standard_error[1] * estimate.standard_error[1];
-            sum += estimate.mean[1];
-            variance += own;
-            squares += own * own;
-        }
-        [sum, variance, squares]
     }
 
     /// Camera paths a second.
@@ -344,4 +338,17 @@ impl Rendered {
             }
         }
     }
+}
+
+/// Σ Y, Σ v and Σ v² of a tile's pixels, where v is the squared standard error of Y.
+fn luminance(tile: &Tile, counts: &[f64]) -> [f64; 3] {
+    let [mut sum, mut variance, mut squares] = [0.0; 3];
+    for pixel in 0..tile.window.pixels() {
+        let estimate = tile.pixels.estimate(pixel, counts, |xyz| xyz);
+        let own = estimate.standard_error[1] * estimate.standard_error[1];
+        sum += estimate.mean[1];
+        variance += own;
+        squares += own * own;
+    }
+    [sum, variance, squares]
 }

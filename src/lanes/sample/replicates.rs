@@ -93,7 +93,6 @@ impl Replicates {
     }
 
     /// Number of samples among the first `samples` that belong to `replicate`.
-    #[inline]
     pub fn samples_of(self, replicate: u32, samples: u32) -> u32 {
         match self {
             Self::Fixed(count) => Self::share(replicate, 0, count, samples),
@@ -112,8 +111,13 @@ impl Replicates {
         }
     }
 
+    /// Number of samples of each replicate among the first `samples`.
+    pub fn counts(self, samples: u32) -> Vec<f64> {
+        let own = |replicate| f64::from(self.samples_of(replicate, samples));
+        (0..self.count(samples)).map(own).collect()
+    }
+
     /// What `replicate` gets of `samples` dealt in turn to `count` replicates from `first` on.
-    #[inline]
     fn share(replicate: u32, first: u32, count: u32, samples: u32) -> u32 {
         if replicate < first || replicate >= first + count {
             return 0;
