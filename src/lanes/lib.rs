@@ -14,6 +14,12 @@
 /// A closure that is always inlined, as one over lanes must be to be compiled for the instruction
 /// set of its caller; an attribute may stand on an argument but not on the right of `let`.
 macro_rules! inlined {
+    (|| $body:expr) => {
+        $crate::math::lanes::inlined_once(
+            #[inline(always)]
+            || $body
+        )
+    };
     ($($closure:tt)*) => {
         $crate::math::lanes::inlined(
             #[inline(always)]

@@ -226,3 +226,10 @@ pub trait Lanes: Copy + Send + Sync + 'static {
 pub fn inlined<F>(f: F) -> F {
     f
 }
+
+/// The same of a closure that is called once. Without the bound it would be taken for one that can be
+/// called again, and be called by way of an adapter that is not inlined.
+#[inline(always)]
+pub fn inlined_once<R, F: FnOnce() -> R>(f: F) -> F {
+    f
+}
