@@ -310,13 +310,10 @@ impl<L: Lanes> Search<L> {
         rays: Rays<'_, L>,
         asked: L::Mask,
     ) {
-        l.vectorize(
-            #[inline(always)]
-            || match model.implicit(k) {
-                Some(implicit) => self.fields.ask(l, model, (k, implicit), rays, asked),
-                None => self.ask::<true>(l, model, k, rays, asked),
-            },
-        );
+        l.vectorize(inlined!(|| match model.implicit(k) {
+            Some(implicit) => self.fields.ask(l, model, (k, implicit), rays, asked),
+            None => self.ask::<true>(l, model, k, rays, asked),
+        }));
     }
 }
 
@@ -330,49 +327,46 @@ pub fn nearest<L: Lanes>(
     active: L::Mask,
     rungs: &mut Rungs,
 ) -> Nearest<L> {
-    l.vectorize(
-        #[inline(always)]
-        || {
-            let rays = Rays { ray, leaving };
-            let search = match &model.hierarchy {
-                None => list::search(l, model, &model.list, rays, active),
-                Some(many) => many::search(l, model, many, rays, active),
-            };
-            let high = search.best.high;
-            let mut best = Nearest {
-                t: (search.best.low + high) * l.real(0.5),
-                part: search.part,
-            };
-            rungs.rays += u64::from(active.bits().count_ones());
-            let unsure = active & search.rival.le(high) & search.rival.lt(l.real(f64::INFINITY));
-            rungs.undecided += u64::from(unsure.bits().count_ones());
-            for i in each(unsure.bits()) {
-                let candidates = candidates(l, model, rays, i, l.lane(high, i));
-                let doubt = rays.doubt(l, i, candidates.as_deref());
-                let found = model.resolver.nearest(&doubt, &mut rungs.ladder);
-                let (t, part) = found.map_or((f64::INFINITY, NOTHING), |found| {
-                    (
-                        found.t,
-                        model.parts.first[found.object as usize] + found.part,
-                    )
-                });
-                best.t = l.with_lane(best.t, i, L::Scalar::from_f64(t));
-                best.part = l.with_int_lane(best.part, i, part);
+    l.vectorize(inlined!(|| {
+        let rays = Rays { ray, leaving };
+        let search = match &model.hierarchy {
+            None => list::search(l, model, &model.list, rays, active),
+            Some(many) => many::search(l, model, many, rays, active),
+        };
+        let high = search.best.high;
+        let mut best = Nearest {
+            t: (search.best.low + high) * l.real(0.5),
+            part: search.part,
+        };
+        rungs.rays += u64::from(active.bits().count_ones());
+        let unsure = active & search.rival.le(high) & search.rival.lt(l.real(f64::INFINITY));
+        rungs.undecided += u64::from(unsure.bits().count_ones());
+        for i in each(unsure.bits()) {
+            let candidates = candidates(l, model, rays, i, l.lane(high, i));
+            let doubt = rays.doubt(l, i, candidates.as_deref());
+            let found = model.resolver.nearest(&doubt, &mut rungs.ladder);
+            let (t, part) = found.map_or((f64::INFINITY, NOTHING), |found| {
+                (
+                    found.t,
+                    model.parts.first[found.object as usize] + found.part,
+                )
+            });
+            best.t = l.with_lane(best.t, i, L::Scalar::from_f64(t));
+            best.part = l.with_int_lane(best.part, i, part);
+        }
+        let mut fields = search.fields;
+        if model.hierarchy.is_none() {
+            (fields.t, fields.part) = (best.t, best.part);
+            for (object, implicit) in &model.implicits {
+                fields.ask(l, model, (*object, implicit), rays, active);
             }
-            let mut fields = search.fields;
-            if model.hierarchy.is_none() {
-                (fields.t, fields.part) = (best.t, best.part);
-                for (object, implicit) in &model.implicits {
-                    fields.ask(l, model, (*object, implicit), rays, active);
-                }
-            }
-            let closer = fields.t.lt(best.t);
-            best.t = l.select(closer, fields.t, best.t);
-            best.part = l.select_int(closer, fields.part, best.part);
-            rungs.implicit = rungs.implicit.joined(fields.tally);
-            best
-        },
-    )
+        }
+        let closer = fields.t.lt(best.t);
+        best.t = l.select(closer, fields.t, best.t);
+        best.part = l.select_int(closer, fields.part, best.part);
+        rungs.implicit = rungs.implicit.joined(fields.tally);
+        best
+    }))
 }
 
 /// Rays towards lights.
@@ -465,13 +459,10 @@ impl<'a, L: Lanes> Blocks<'a, L> {
     /// Asks any object, as one copy of code, for the hierarchy.
     #[inline(never)]
     pub fn ask_alone(&mut self, l: L, model: &Model<L::Scalar>, k: u32, asked: L::Mask) {
-        l.vectorize(
-            #[inline(always)]
-            || match model.implicit(k) {
-                Some(implicit) => self.ask_field(l, (k, implicit), asked),
-                None => self.ask::<true>(l, model, k, asked),
-            },
-        );
+        l.vectorize(inlined!(|| match model.implicit(k) {
+            Some(implicit) => self.ask_field(l, (k, implicit), asked),
+            None => self.ask::<true>(l, model, k, asked),
+        }));
     }
 }
 
@@ -488,37 +479,34 @@ pub fn occluded<L: Lanes>(
     active: L::Mask,
     rungs: &mut Rungs,
 ) -> L::Mask {
-    l.vectorize(
-        #[inline(always)]
-        || {
-            let mut blocks = Blocks::new(l, shadow, leaving);
-            match &model.hierarchy {
-                None => list::blocks(l, model, &model.occluders, &mut blocks, active),
-                Some(many) => many::blocks(l, model, many, &mut blocks, active),
+    l.vectorize(inlined!(|| {
+        let mut blocks = Blocks::new(l, shadow, leaving);
+        match &model.hierarchy {
+            None => list::blocks(l, model, &model.occluders, &mut blocks, active),
+            Some(many) => many::blocks(l, model, many, &mut blocks, active),
+        }
+        let rays = blocks.rays;
+        rungs.rays += u64::from(active.bits().count_ones());
+        let unsure = active & blocks.doubtful & !blocks.blocked;
+        rungs.undecided += u64::from(unsure.bits().count_ones());
+        let mut answers = 0;
+        for i in each(unsure.bits()) {
+            // The limit is a rounded distance: a few units in its last place are its own noise.
+            let end = l.lane(shadow.limit, i).to_f64() * (1.0 - 8.0 * L::Scalar::ROUNDOFF);
+            let limit = l.lane(shadow.limit, i);
+            let candidates = candidates(l, model, rays, i, limit);
+            let doubt = rays.doubt(l, i, candidates.as_deref());
+            let (except, tally) = (l.int_lane(shadow.except, i), &mut rungs.ladder);
+            let hidden = model.resolver.occluded(&doubt, end, except, tally);
+            answers |= u32::from(hidden) << i;
+        }
+        blocks.blocked = blocks.blocked | l.mask_from_bits(answers);
+        if model.hierarchy.is_none() {
+            for (object, implicit) in model.implicits.iter().filter(|(k, _)| model.hides(*k)) {
+                blocks.ask_field(l, (*object, implicit), active);
             }
-            let rays = blocks.rays;
-            rungs.rays += u64::from(active.bits().count_ones());
-            let unsure = active & blocks.doubtful & !blocks.blocked;
-            rungs.undecided += u64::from(unsure.bits().count_ones());
-            let mut answers = 0;
-            for i in each(unsure.bits()) {
-                // The limit is a rounded distance: a few units in its last place are its own noise.
-                let end = l.lane(shadow.limit, i).to_f64() * (1.0 - 8.0 * L::Scalar::ROUNDOFF);
-                let limit = l.lane(shadow.limit, i);
-                let candidates = candidates(l, model, rays, i, limit);
-                let doubt = rays.doubt(l, i, candidates.as_deref());
-                let (except, tally) = (l.int_lane(shadow.except, i), &mut rungs.ladder);
-                let hidden = model.resolver.occluded(&doubt, end, except, tally);
-                answers |= u32::from(hidden) << i;
-            }
-            blocks.blocked = blocks.blocked | l.mask_from_bits(answers);
-            if model.hierarchy.is_none() {
-                for (object, implicit) in model.implicits.iter().filter(|(k, _)| model.hides(*k)) {
-                    blocks.ask_field(l, (*object, implicit), active);
-                }
-            }
-            rungs.implicit = rungs.implicit.joined(blocks.tally);
-            blocks.blocked
-        },
-    )
+        }
+        rungs.implicit = rungs.implicit.joined(blocks.tally);
+        blocks.blocked
+    }))
 }

@@ -7,7 +7,7 @@
 use super::intersect::{Asked, Blocks, Candidate, FieldHits, Leaving, Rays, Search, candidate};
 use super::model::{Many, Model};
 use super::pool::{WIDEST, array, each, int_array};
-use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
+use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 use crate::shape::ShapeKind;
 use crate::shape::hierarchy::{BoxRay, Child, Descent, WIDTH};
@@ -55,10 +55,7 @@ impl<T: Scalar> Stored<T> {
     fn lone<N: Lanes<Scalar = T>>(&self, n: N, i: usize) -> Lone<N> {
         let origin = one_of(&self.origin, i);
         let inverse = one_of(&self.inverse, i);
-        let vector = inlined(
-            #[inline(always)]
-            |[x, y, z]: [T; 3]| Vec3::new(n.splat(x), n.splat(y), n.splat(z)),
-        );
+        let vector = inlined!(|[x, y, z]: [T; 3]| Vec3::new(n.splat(x), n.splat(y), n.splat(z)));
         Lone {
             ray: LaneRay {
                 origin: vector(origin),
@@ -122,19 +119,16 @@ impl<N: Lanes> Lone<N> {
         k: u32,
         limit: N::Scalar,
     ) -> Option<Candidate<N>> {
-        n.vectorize(
-            #[inline(always)]
-            || {
-                let shape = &model.shapes[k as usize];
-                let kind = shape.kind?;
-                let asked = Asked::new(n, n.int(k), kind, &self.leaving, n.mask(true));
-                let span = shape.span_by_call(n, &self.ray, asked.all, n.splat(limit));
-                if !asked.met(&span).any() {
-                    return None;
-                }
-                Some(candidate(n, &span, &asked))
-            },
-        )
+        n.vectorize(inlined!(|| {
+            let shape = &model.shapes[k as usize];
+            let kind = shape.kind?;
+            let asked = Asked::new(n, n.int(k), kind, &self.leaving, n.mask(true));
+            let span = shape.span_by_call(n, &self.ray, asked.all, n.splat(limit));
+            if !asked.met(&span).any() {
+                return None;
+            }
+            Some(candidate(n, &span, &asked))
+        }))
     }
 }
 
@@ -148,19 +142,16 @@ impl<N: Lanes> Lone<N> {
         limit: N::Scalar,
         tally: &mut ImplicitTally,
     ) -> Option<N::Scalar> {
-        n.vectorize(
-            #[inline(always)]
-            || {
-                let question = FieldQuestion {
-                    ray: &self.ray,
-                    start: self.leaving.start_sign(n, object),
-                    limit: n.splat(limit),
-                    active: n.mask_from_bits(1),
-                };
-                let (t, found) = implicit.first_hit(n, &question, tally);
-                found.any().then(|| n.lane(t, 0))
-            },
-        )
+        n.vectorize(inlined!(|| {
+            let question = FieldQuestion {
+                ray: &self.ray,
+                start: self.leaving.start_sign(n, object),
+                limit: n.splat(limit),
+                active: n.mask_from_bits(1),
+            };
+            let (t, found) = implicit.first_hit(n, &question, tally);
+            found.any().then(|| n.lane(t, 0))
+        }))
     }
 }
 
@@ -227,70 +218,67 @@ pub(super) fn search<L: Lanes>(
     rays: Rays<'_, L>,
     active: L::Mask,
 ) -> Search<L> {
-    l.vectorize(
-        #[inline(always)]
-        || {
-            let mut search = Search::new(l);
-            for &k in &many.broad {
-                search.ask_alone(l, model, k, rays, active);
-            }
-            let ray = rays.ray;
-            let inverse = ray.direction.reciprocal(l);
-            let met = many.boxes.all.meets(l, ray.origin, inverse, search.limit());
-            let met = (active & met).bits();
-            if met == 0 {
-                return search;
-            }
-            let mut low = array(l, search.best.low);
-            let mut high = array(l, search.best.high);
-            let mut part = int_array(l, search.part);
-            let mut rival = array(l, search.rival);
-            let mut field_t = array(l, search.fields.t);
-            let mut field_part = int_array(l, search.fields.part);
-            let mut tally = search.fields.tally;
-            let n = l.narrow();
-            let stored = Stored::new(l, rays, inverse);
-            let mut descent = Descent::new();
-            for i in each(met) {
-                let mut closest = Closest {
-                    low: low[i],
-                    high: high[i],
-                    part: part[i],
-                    rival: rival[i],
-                    field: (field_t[i], field_part[i]),
-                    tally,
-                };
-                descent.restart();
-                closest_along(
-                    n,
-                    model,
-                    many,
-                    &stored.lone(n, i),
-                    &mut descent,
-                    &mut closest,
-                );
-                low[i] = closest.low;
-                high[i] = closest.high;
-                part[i] = closest.part;
-                rival[i] = closest.rival;
-                (field_t[i], field_part[i]) = closest.field;
-                tally = closest.tally;
-            }
-            Search {
-                best: Enclosure {
-                    low: l.load(&low),
-                    high: l.load(&high),
-                },
-                part: l.load_int(&part),
-                rival: l.load(&rival),
-                fields: FieldHits {
-                    t: l.load(&field_t),
-                    part: l.load_int(&field_part),
-                    tally,
-                },
-            }
-        },
-    )
+    l.vectorize(inlined!(|| {
+        let mut search = Search::new(l);
+        for &k in &many.broad {
+            search.ask_alone(l, model, k, rays, active);
+        }
+        let ray = rays.ray;
+        let inverse = ray.direction.reciprocal(l);
+        let met = many.boxes.all.meets(l, ray.origin, inverse, search.limit());
+        let met = (active & met).bits();
+        if met == 0 {
+            return search;
+        }
+        let mut low = array(l, search.best.low);
+        let mut high = array(l, search.best.high);
+        let mut part = int_array(l, search.part);
+        let mut rival = array(l, search.rival);
+        let mut field_t = array(l, search.fields.t);
+        let mut field_part = int_array(l, search.fields.part);
+        let mut tally = search.fields.tally;
+        let n = l.narrow();
+        let stored = Stored::new(l, rays, inverse);
+        let mut descent = Descent::new();
+        for i in each(met) {
+            let mut closest = Closest {
+                low: low[i],
+                high: high[i],
+                part: part[i],
+                rival: rival[i],
+                field: (field_t[i], field_part[i]),
+                tally,
+            };
+            descent.restart();
+            closest_along(
+                n,
+                model,
+                many,
+                &stored.lone(n, i),
+                &mut descent,
+                &mut closest,
+            );
+            low[i] = closest.low;
+            high[i] = closest.high;
+            part[i] = closest.part;
+            rival[i] = closest.rival;
+            (field_t[i], field_part[i]) = closest.field;
+            tally = closest.tally;
+        }
+        Search {
+            best: Enclosure {
+                low: l.load(&low),
+                high: l.load(&high),
+            },
+            part: l.load_int(&part),
+            rival: l.load(&rival),
+            fields: FieldHits {
+                t: l.load(&field_t),
+                part: l.load_int(&field_part),
+                tally,
+            },
+        }
+    }))
 }
 
 /// Asks what one ray meets the boxes of, nearest boxes first.
@@ -348,41 +336,38 @@ pub(super) fn blocks<L: Lanes>(
     blocks: &mut Blocks<'_, L>,
     active: L::Mask,
 ) {
-    l.vectorize(
-        #[inline(always)]
-        || {
-            let shadow = blocks.shadow;
-            for &k in many.broad.iter().filter(|k| many.hides[**k as usize]) {
-                blocks.ask_alone(l, model, k, active);
-            }
-            let inverse = shadow.ray.direction.reciprocal(l);
-            let (origin, limit) = (shadow.ray.origin, shadow.limit);
-            let met = many.boxes.all.meets(l, origin, inverse, limit);
-            let met = (active & met & !blocks.blocked).bits();
-            if met == 0 {
-                return;
-            }
-            let n = l.narrow();
-            let stored = Stored::new(l, blocks.rays, inverse);
-            let limits = array(l, shadow.limit);
-            let excepted = int_array(l, shadow.except);
-            let mut descent = Descent::new();
-            let (mut blocked, mut doubtful) = (0, 0);
-            for i in each(met) {
-                descent.restart();
-                let lone = stored.lone(n, i);
-                let end = End {
-                    limit: limits[i],
-                    except: n.int(excepted[i]),
-                };
-                let found = block_along(n, model, &lone, &end, (&mut descent, &mut blocks.tally));
-                blocked |= u32::from(found == Block::Sure) << i;
-                doubtful |= u32::from(found == Block::Doubtful) << i;
-            }
-            blocks.blocked = blocks.blocked | l.mask_from_bits(blocked);
-            blocks.doubtful = blocks.doubtful | l.mask_from_bits(doubtful);
-        },
-    )
+    l.vectorize(inlined!(|| {
+        let shadow = blocks.shadow;
+        for &k in many.broad.iter().filter(|k| many.hides[**k as usize]) {
+            blocks.ask_alone(l, model, k, active);
+        }
+        let inverse = shadow.ray.direction.reciprocal(l);
+        let (origin, limit) = (shadow.ray.origin, shadow.limit);
+        let met = many.boxes.all.meets(l, origin, inverse, limit);
+        let met = (active & met & !blocks.blocked).bits();
+        if met == 0 {
+            return;
+        }
+        let n = l.narrow();
+        let stored = Stored::new(l, blocks.rays, inverse);
+        let limits = array(l, shadow.limit);
+        let excepted = int_array(l, shadow.except);
+        let mut descent = Descent::new();
+        let (mut blocked, mut doubtful) = (0, 0);
+        for i in each(met) {
+            descent.restart();
+            let lone = stored.lone(n, i);
+            let end = End {
+                limit: limits[i],
+                except: n.int(excepted[i]),
+            };
+            let found = block_along(n, model, &lone, &end, (&mut descent, &mut blocks.tally));
+            blocked |= u32::from(found == Block::Sure) << i;
+            doubtful |= u32::from(found == Block::Doubtful) << i;
+        }
+        blocks.blocked = blocks.blocked | l.mask_from_bits(blocked);
+        blocks.doubtful = blocks.doubtful | l.mask_from_bits(doubtful);
+    }))
 }
 
 /// Where a shadow ray ends.

@@ -6,7 +6,7 @@ use super::needs::Needs;
 use super::parts::{Entry, Look, NO_LIGHT, SmallTable, word};
 use super::pool::has;
 use crate::material::{MaterialKind, SPECTRA};
-use crate::math::lanes::{Int, Lanes, Mask, Real, inlined};
+use crate::math::lanes::{Int, Lanes, Mask, Real};
 use crate::math::vec3::Vec3;
 use crate::sample::mis::power_weight;
 use crate::shape::lanes::part::Outline;
@@ -58,71 +58,65 @@ pub fn surfaces<L: Lanes>(
     arrival: &Arrival<'_, L>,
     hit: L::Mask,
 ) -> Surfaces<L> {
-    l.vectorize(
-        #[inline(always)]
-        || {
-            let Arrival {
-                ray,
-                leaving,
-                nearest,
-                ..
-            } = arrival;
-            let p = ray.origin.along(ray.direction, nearest.t);
-            let (parts, needs) = (&model.parts, model.needs);
-            let gathered = match &parts.small {
-                Some(table) => looked_up(l, table, nearest.part, needs, hit),
-                None => one_by_one(l, &parts.entries, nearest.part, hit),
-            };
-            let nobody = l.mask(false);
-            let has = inlined(
-                #[inline(always)]
-                |bit: u32| {
-                    if needs.has(bit) {
-                        hit & has(l, gathered.word, bit)
-                    } else {
-                        nobody
-                    }
-                },
-            );
-            let [x, y, z] = gathered.vector;
-            let outline = Outline {
-                vector: Vec3::new(x, y, z),
-                level: gathered.level,
-                half: gathered.half,
-                faces: has(word::FACES),
-                balls: has(word::BALL),
-            };
-            let LaneSurface { point, normal } = outline.surface(l, p);
-            let mut out = Surfaces::<L> {
-                point,
-                normal,
-                object: l.select_int(hit, gathered.object, l.int(NOTHING)),
-                front: nobody,
-                kind: l.select_int(
-                    hit,
-                    gathered.word & l.int(word::KIND),
-                    l.int(MaterialKind::Black as u32),
-                ),
-                spectra: gathered.spectra,
-                disperses: has(word::DISPERSES),
-                emits: nobody,
-                emission: gathered.emission,
-                emission_weight: l.real(1.0),
-            };
-            others(l, model, arrival, (p, has(word::OTHER)), &mut out);
-            let mut front = out.normal.dot(ray.direction).lt(l.real(0.0));
-            // A chord along the wall is short, and the normals at its ends are rounded.
-            let exits = front & leaving.inward & leaving.object.same(out.object);
-            if exits.any() {
-                front = front & !(exits & has(word::CLOSED));
+    l.vectorize(inlined!(|| {
+        let Arrival {
+            ray,
+            leaving,
+            nearest,
+            ..
+        } = arrival;
+        let p = ray.origin.along(ray.direction, nearest.t);
+        let (parts, needs) = (&model.parts, model.needs);
+        let gathered = match &parts.small {
+            Some(table) => looked_up(l, table, nearest.part, needs, hit),
+            None => one_by_one(l, &parts.entries, nearest.part, hit),
+        };
+        let nobody = l.mask(false);
+        let has = inlined!(|bit: u32| {
+            if needs.has(bit) {
+                hit & has(l, gathered.word, bit)
+            } else {
+                nobody
             }
-            out.front = hit & front;
-            out.emits = (has(word::EMITS_FRONT) & front) | (has(word::EMITS_BACK) & !front);
-            textures(l, model, has(word::TEXTURED), &mut out);
-            weights(l, model, arrival, gathered.light, &mut out);
-            out
-        },
-    )
+        });
+        let [x, y, z] = gathered.vector;
+        let outline = Outline {
+            vector: Vec3::new(x, y, z),
+            level: gathered.level,
+            half: gathered.half,
+            faces: has(word::FACES),
+            balls: has(word::BALL),
+        };
+        let LaneSurface { point, normal } = outline.surface(l, p);
+        let mut out = Surfaces::<L> {
+            point,
+            normal,
+            object: l.select_int(hit, gathered.object, l.int(NOTHING)),
+            front: nobody,
+            kind: l.select_int(
+                hit,
+                gathered.word & l.int(word::KIND),
+                l.int(MaterialKind::Black as u32),
+            ),
+            spectra: gathered.spectra,
+            disperses: has(word::DISPERSES),
+            emits: nobody,
+            emission: gathered.emission,
+            emission_weight: l.real(1.0),
+        };
+        others(l, model, arrival, (p, has(word::OTHER)), &mut out);
+        let mut front = out.normal.dot(ray.direction).lt(l.real(0.0));
+        // A chord along the wall is short, and the normals at its ends are rounded.
+        let exits = front & leaving.inward & leaving.object.same(out.object);
+        if exits.any() {
+            front = front & !(exits & has(word::CLOSED));
+        }
+        out.front = hit & front;
+        out.emits = (has(word::EMITS_FRONT) & front) | (has(word::EMITS_BACK) & !front);
+        textures(l, model, has(word::TEXTURED), &mut out);
+        weights(l, model, arrival, gathered.light, &mut out);
+        out
+    }))
 }
 
 /// Weighs the emission of what light sampling could have found too.

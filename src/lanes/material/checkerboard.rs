@@ -8,7 +8,7 @@ use super::{
     Variates, Vec3,
 };
 use crate::declare::{Declaration, Parameter, Quantity, Range, Role};
-use crate::math::lanes::{Real, inlined};
+use crate::math::lanes::Real;
 
 /// [`Diffuse`], of the first albedo in cells whose numbers sum to an even one, else of the second.
 pub struct Checkerboard;
@@ -49,10 +49,7 @@ impl Material for Checkerboard {
         local: Vec3<L::Real>,
         [even, odd]: [L::Int; SPECTRA],
     ) -> [L::Int; SPECTRA] {
-        let cell = inlined(
-            #[inline(always)]
-            |x: L::Real, frequency: L::Real| (x * frequency).floor(),
-        );
+        let cell = inlined!(|x: L::Real, frequency: L::Real| (x * frequency).floor());
         let [fx, fy, fz] = numbers;
         let half = (cell(local.x, fx) + cell(local.y, fy) + cell(local.z, fz)) * l.real(0.5);
         [l.select_int(half.same(half.floor()), even, odd), odd]

@@ -85,19 +85,13 @@ impl Sequence {
     /// [`Sampler::camera`].
     #[inline(never)]
     pub fn camera<L: Lanes>(&self, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
-        l.vectorize(
-            #[inline(always)]
-            || of!(self.kind, camera(self, l, id, lens)),
-        )
+        l.vectorize(inlined!(|| of!(self.kind, camera(self, l, id, lens))))
     }
 
     /// [`Sampler::pair`].
     #[inline(never)]
     pub fn pair<L: Lanes>(&self, l: L, id: Identity<L>, slot: Slot, depth: L::Int) -> [L::Real; 2] {
-        l.vectorize(
-            #[inline(always)]
-            || of!(self.kind, pair(self, l, id, slot, depth)),
-        )
+        l.vectorize(inlined!(|| of!(self.kind, pair(self, l, id, slot, depth))))
     }
 
     /// [`Sampler::two_pairs`].
@@ -111,19 +105,19 @@ impl Sequence {
     ) -> [[L::Real; 2]; 2] {
         let [slot, second] = slots;
         debug_assert!((slot as u32).is_multiple_of(2) && second as u32 == slot as u32 + 1);
-        l.vectorize(
-            #[inline(always)]
-            || of!(self.kind, two_pairs(self, l, id, slots, depth)),
-        )
+        l.vectorize(inlined!(|| of!(
+            self.kind,
+            two_pairs(self, l, id, slots, depth)
+        )))
     }
 
     /// [`Sampler::single`].
     #[inline(never)]
     pub fn single<L: Lanes>(&self, l: L, id: Identity<L>, slot: Slot, depth: L::Int) -> L::Real {
-        l.vectorize(
-            #[inline(always)]
-            || of!(self.kind, single(self, l, id, slot, depth)),
-        )
+        l.vectorize(inlined!(|| of!(
+            self.kind,
+            single(self, l, id, slot, depth)
+        )))
     }
 
     /// A hash of a sample's key and a slot at a bounce.
