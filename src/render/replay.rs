@@ -26,7 +26,7 @@ fn one<T: Runs<C>, const C: usize>(
     level: Instructions,
     request: Request,
 ) -> Replayed {
-    let mut workspace = Workspace::<T, C>::new();
+    let mut workspace = Workspace::<T, C>::default();
     workspace.trace = Some(Vec::new());
     let mut requests = Requests::default();
     requests.push(request.x, request.y, request.sample, request.sample + 1);

@@ -1,13 +1,14 @@
 //! How a packet of paths goes on from the surfaces it has met.
 
 use super::bounce::Step;
+use super::chunk::Workspace;
 use super::direct::Lit;
-use super::pool::{Carried, WIDEST, any, array, bit_where, each, flags, has};
+use super::pool::{Carried, WIDEST, array, bit_where, each, flags, has};
 use super::surface::{Surfaces, for_each_distinct};
 use crate::material::diffuse::reflected;
 use crate::material::{
-    Event, Interface, Material, MaterialKind, MaterialKinds, Medium, NUMBERS, Transport, Variates,
-    Wavelengths, each_material,
+    Event, Interface, Material, MaterialKind, Medium, NUMBERS, Transport, Variates, Wavelengths,
+    each_material,
 };
 use crate::math::lanes::{Int, Lanes, Mask, Scalar};
 use crate::math::vec3::Vec3;
@@ -17,23 +18,15 @@ use crate::sample::Slot;
 pub struct Meeting<'a, L: Lanes> {
     /// The surfaces.
     pub surface: &'a Surfaces<L>,
-    /// Unit directions of the rays that have come there.
-    pub direction: Vec3<L::Real>,
+    /// Unit directions towards where the paths come from.
+    pub wo: Vec3<L::Real>,
     /// Unit normals on their side.
     pub normal: Vec3<L::Real>,
     /// Lanes that go on from here.
     pub going: L::Mask,
-    /// The materials that the loop has.
-    pub kinds: MaterialKinds,
 }
 
 impl<L: Lanes> Meeting<'_, L> {
-    /// Unit directions towards where the paths come from.
-    #[inline(always)]
-    pub fn wo(&self) -> Vec3<L::Real> {
-        -self.direction
-    }
-
     /// Lanes whose surfaces are of a material.
     #[inline(always)]
     pub fn of(&self, l: L, kind: MaterialKind) -> L::Mask {
@@ -54,7 +47,7 @@ pub struct Question<'a, L: Lanes, const C: usize> {
     pub at: Interface<'a, L, C>,
     /// Throughputs and radiances.
     pub paths: &'a mut [Carried<L::Scalar, C>],
-    /// [`Step::values`].
+    /// [`Workspace::values`](super::chunk::Workspace).
     pub values: &'a mut [[L::Scalar; C]; WIDEST],
 }
 
@@ -97,26 +90,33 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     #[inline(always)]
     pub fn scatter(&mut self, l: L, meeting: &Meeting<'_, L>) -> Scattered<L> {
         let mut next = Scattered {
-            direction: meeting.direction,
+            direction: meeting.wo,
             pdf: l.real(0.0),
             specular: l.mask(true),
             inward: !meeting.surface.front,
         };
+        let kinds = self.model.needs.materials;
         let mut spread = l.mask(false);
-        each_material!(M, KIND => if M::SPREAD && meeting.kinds.contains(KIND) {
+        each_material!(M, KIND => if M::SPREAD && kinds.contains(KIND) {
             spread = spread | meeting.of(l, KIND);
         });
-        let mut direction = [l.real(0.0); 2];
-        let mut lit = None;
-        if any(spread) {
-            (direction, lit) = self.light(l, meeting, spread);
+        let (mut direction, mut lit) = ([l.real(0.0); 2], None);
+        if spread.any() {
+            let (sequence, id) = (&self.model.sequence, self.paths.id);
+            if self.model.lights.is_empty() {
+                direction = sequence.pair(l, id, Slot::Bsdf);
+            } else {
+                let [light, bsdf] = sequence.light_and_bsdf(l, id);
+                direction = bsdf;
+                lit = Some(self.direct(l, meeting, spread, light));
+            }
         }
-        each_material!(M, KIND => if (M::SPREAD || M::DELTA) && meeting.kinds.contains(KIND) {
+        each_material!(M, KIND => if (M::SPREAD || M::DELTA) && kinds.contains(KIND) {
             let own = meeting.of(l, KIND);
-            if any(own) {
+            if own.any() {
                 let event = if M::LAMBERTIAN {
                     self.reflect(l, own, meeting.surface.spectra[0], &lit);
-                    reflected(l, meeting.normal, meeting.wo(), direction)
+                    reflected(l, meeting.normal, meeting.wo, direction)
                 } else {
                     self.sample::<M>(l, meeting, (own, direction), &lit)
                 };
@@ -124,24 +124,6 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             }
         });
         next
-    }
-
-    /// Direct light, where there are lights to be sampled, and the numbers for the directions.
-    #[inline(always)]
-    fn light(
-        &mut self,
-        l: L,
-        meeting: &Meeting<'_, L>,
-        spread: L::Mask,
-    ) -> ([L::Real; 2], Option<Lit<L>>) {
-        let sequence = &self.model.sequence;
-        if self.model.lights.is_empty() {
-            let numbers = sequence.pair(l, self.id, Slot::Bsdf, self.depth);
-            return (numbers, None);
-        }
-        let slots = [Slot::Light, Slot::Bsdf];
-        let [light, direction] = sequence.two_pairs(l, self.id, slots, self.depth);
-        (direction, Some(self.direct(l, meeting, spread, light)))
     }
 
     /// Lambertian surfaces: multiplies the throughput by the albedo, which is bsdf · cos/pdf of the
@@ -152,7 +134,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let albedos = self.table_rows(l, albedo);
         let table = self.model.spectra.rows::<C>();
         let Some(lit) = lit else {
-            let paths = self.rows.paths.as_mut_slice();
+            let paths = self.workspace.rows.paths.as_mut_slice();
             for i in each(m.bits()) {
                 let albedo = &table[albedos[i % WIDEST] as usize];
                 paths[self.slots[i % WIDEST] as usize].weigh(albedo);
@@ -161,7 +143,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         };
         let emissions = self.table_rows(l, lit.spectrum);
         let weights = array(l, lit.weight);
-        let paths = self.rows.paths.as_mut_slice();
+        let paths = self.workspace.rows.paths.as_mut_slice();
         for i in each(m.bits()) {
             let slot = self.slots[i % WIDEST] as usize;
             // Copies: arrays that cannot overlap become vectors.
@@ -198,7 +180,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         }
         let choice = if M::CHOOSES {
             let sequence = &self.model.sequence;
-            sequence.single(l, self.id, Slot::Choice, self.depth)
+            sequence.single(l, self.paths.id, Slot::Choice)
         } else {
             l.real(0.0)
         };
@@ -207,14 +189,14 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let event = M::sample(
             l,
             &at,
-            meeting.wo(),
+            meeting.wo,
             Transport::Radiance,
             Variates { choice, direction },
             #[inline(always)]
             |i, weight| paths[slots[i] as usize].weigh(weight),
         );
         if M::REFRACTS {
-            self.flags = self.flags | bit_where(l, event.ends, flags::TERMINATED);
+            self.paths.flags = self.paths.flags | bit_where(l, event.ends, flags::TERMINATED);
         }
         event
     }
@@ -225,9 +207,10 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let emissions = self.table_rows(l, lit.spectrum);
         let weights = array(l, lit.weight);
         let table = self.model.spectra.rows::<C>();
+        let Workspace { rows, values, .. } = &mut *self.workspace;
         for i in each((own & lit.arrives).bits()) {
-            let path = &mut self.rows.paths[self.slots[i] as usize];
-            path.receive(weights[i], &self.values[i], &table[emissions[i] as usize]);
+            let path = &mut rows.paths[self.slots[i] as usize];
+            path.receive(weights[i], &values[i], &table[emissions[i] as usize]);
         }
     }
 
@@ -241,7 +224,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     ) -> Question<'_, L, C> {
         let surface = meeting.surface;
         let [n, k] = surface.spectra;
-        let rows = &mut *self.rows;
+        let Workspace { rows, values, .. } = &mut *self.workspace;
         let mut at = Interface {
             lanes,
             geometric: meeting.normal,
@@ -258,11 +241,11 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             numbers: [l.real(0.0); NUMBERS],
             wavelengths: Wavelengths {
                 bank: self.model.spectra.rows::<C>(),
-                row: self.row,
+                row: self.paths.row,
                 slots: &self.slots,
                 hero: &rows.hero,
                 fraction: &rows.fraction,
-                ended: has(l, self.flags, flags::TERMINATED),
+                ended: has(l, self.paths.flags, flags::TERMINATED),
             },
             #[cfg(feature = "planted")]
             planted: self.model.planted,
@@ -284,7 +267,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         Question {
             at,
             paths: &mut rows.paths,
-            values: self.values,
+            values,
         }
     }
 }

@@ -1,16 +1,17 @@
 //! What a packet of hits looks like: geometry, appearance, emission.
 
-use super::intersect::{Leaving, NOTHING, Nearest};
+use super::intersect::{NOTHING, Nearest, Rays};
 use super::model::Model;
 use super::needs::Needs;
 use super::parts::{Entry, Look, NO_LIGHT, SmallTable, word};
 use super::pool::has;
 use crate::material::{MaterialKind, SPECTRA};
 use crate::math::lanes::{Int, Lanes, Mask, Real};
+use crate::math::lookup::SMALL;
 use crate::math::vec3::Vec3;
 use crate::sample::mis::power_weight;
+use crate::shape::lanes::LaneSurface;
 use crate::shape::lanes::part::Outline;
-use crate::shape::lanes::{LaneRay, LaneSurface};
 
 /// The surfaces that a packet of rays has met.
 #[derive(Clone, Copy)]
@@ -39,9 +40,7 @@ pub struct Surfaces<L: Lanes> {
 
 /// Rays that have come to surfaces.
 pub struct Arrival<'a, L: Lanes> {
-    pub ray: &'a LaneRay<L>,
-    /// What they come from.
-    pub leaving: &'a Leaving<L>,
+    pub rays: &'a Rays<L>,
     /// What they have met.
     pub nearest: Nearest<L>,
     /// Density with which the direction was sampled.
@@ -59,12 +58,8 @@ pub fn surfaces<L: Lanes>(
     hit: L::Mask,
 ) -> Surfaces<L> {
     l.vectorize(inlined!(|| {
-        let Arrival {
-            ray,
-            leaving,
-            nearest,
-            ..
-        } = arrival;
+        let Arrival { rays, nearest, .. } = arrival;
+        let ray = &rays.ray;
         let p = ray.origin.along(ray.direction, nearest.t);
         let (parts, needs) = (&model.parts, model.needs);
         let gathered = match &parts.small {
@@ -107,7 +102,7 @@ pub fn surfaces<L: Lanes>(
         others(l, model, arrival, (p, has(word::OTHER)), &mut out);
         let mut front = out.normal.dot(ray.direction).lt(l.real(0.0));
         // A chord along the wall is short, and the normals at its ends are rounded.
-        let exits = front & leaving.inward & leaving.object.same(out.object);
+        let exits = front & rays.inward & rays.leaving.same(out.object);
         if exits.any() {
             front = front & !(exits & has(word::CLOSED));
         }
@@ -128,7 +123,7 @@ fn weights<L: Lanes>(
     light: L::Int,
     out: &mut Surfaces<L>,
 ) {
-    let ray = arrival.ray;
+    let ray = &arrival.rays.ray;
     let weighted = out.emits & !arrival.specular & !light.same(l.int(NO_LIGHT));
     for_each_distinct(
         l,
@@ -162,7 +157,7 @@ pub fn for_each_distinct<L: Lanes>(
     }
 }
 
-/// All lanes at once, from a table that fits in registers.
+/// All lanes at once, from a table that fits in registers; 0 for what nothing needs.
 #[inline(always)]
 fn looked_up<L: Lanes>(
     l: L,
@@ -173,25 +168,28 @@ fn looked_up<L: Lanes>(
 ) -> Look<L::Real, L::Int> {
     // Lanes that have hit nothing read some entry, and what it says is not used.
     let part = l.select_int(hit, part, l.int(0));
-    table.zip(
-        &Look::wanted(needs),
-        #[inline(always)]
-        |column, wanted| {
-            if *wanted {
-                l.lookup(column, part)
-            } else {
-                l.real(0.0)
-            }
+    let real = inlined!(|column: &[L::Scalar; SMALL]| l.lookup(column, part));
+    let int = inlined!(|column: &[u32; SMALL]| l.lookup_int(column, part));
+    let [x, y, z] = &table.vector;
+    let [first, second] = &table.spectra;
+    let (mut emission, mut light) = (l.int(0), l.int(0));
+    if needs.has(word::EMITS) {
+        (emission, light) = (int(&table.emission), int(&table.light));
+    }
+    Look {
+        vector: [real(x), real(y), real(z)],
+        level: real(&table.level),
+        half: if needs.has(word::FACES) {
+            real(&table.half)
+        } else {
+            l.real(0.0)
         },
-        #[inline(always)]
-        |column, wanted| {
-            if *wanted {
-                l.lookup_int(column, part)
-            } else {
-                l.int(0)
-            }
-        },
-    )
+        object: int(&table.object),
+        word: int(&table.word),
+        spectra: [int(first), int(second)],
+        emission,
+        light,
+    }
 }
 
 /// One distinct part at a time.
@@ -219,13 +217,21 @@ fn one_by_one<L: Lanes>(
         hit,
         #[inline(always)]
         |k, here| {
-            out = entries[k as usize].zip(
-                &out,
-                #[inline(always)]
-                |own, other| l.select(here, l.splat(*own), *other),
-                #[inline(always)]
-                |own, other| l.select_int(here, l.int(*own), *other),
-            );
+            let own = &entries[k as usize];
+            let real = inlined!(|x: L::Scalar, other| l.select(here, l.splat(x), other));
+            let int = inlined!(|x: u32, other| l.select_int(here, l.int(x), other));
+            for (out, own) in out.vector.iter_mut().zip(own.vector) {
+                *out = real(own, *out);
+            }
+            for (out, own) in out.spectra.iter_mut().zip(own.spectra) {
+                *out = int(own, *out);
+            }
+            out.level = real(own.level, out.level);
+            out.half = real(own.half, out.half);
+            out.object = int(own.object, out.object);
+            out.word = int(own.word, out.word);
+            out.emission = int(own.emission, out.emission);
+            out.light = int(own.light, out.light);
         },
     );
     out
@@ -241,7 +247,7 @@ fn others<L: Lanes>(
     out: &mut Surfaces<L>,
 ) {
     let objects = out.object;
-    let ray = arrival.ray;
+    let ray = &arrival.rays.ray;
     for_each_distinct(
         l,
         objects,

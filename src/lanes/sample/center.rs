@@ -3,7 +3,7 @@
 use super::Slot;
 use super::kind::Sampler;
 use super::sequence::{CameraSample, Identity, Sequence};
-use super::sobol::{Sobol, coordinate};
+use super::sobol::Sobol;
 use crate::math::lanes::Lanes;
 
 /// Every path through its pixel's centre.
@@ -21,40 +21,19 @@ impl Sampler for Center {
 
     #[inline(always)]
     fn camera<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
-        let zero = l.real(0.0);
         CameraSample {
             pixel: [l.real(0.5); 2],
-            wavelength: coordinate(sequence, l, id, 2),
-            lens: if lens {
-                [
-                    coordinate(sequence, l, id, 3),
-                    coordinate(sequence, l, id, 4),
-                ]
-            } else {
-                [zero; 2]
-            },
+            ..Sobol::camera(sequence, l, id, lens)
         }
     }
 
     #[inline(always)]
-    fn single<L: Lanes>(
-        sequence: &Sequence,
-        l: L,
-        id: Identity<L>,
-        slot: Slot,
-        depth: L::Int,
-    ) -> L::Real {
-        Sobol::single(sequence, l, id, slot, depth)
+    fn single<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, slot: Slot) -> L::Real {
+        Sobol::single(sequence, l, id, slot)
     }
 
     #[inline(always)]
-    fn pair<L: Lanes>(
-        sequence: &Sequence,
-        l: L,
-        id: Identity<L>,
-        slot: Slot,
-        depth: L::Int,
-    ) -> [L::Real; 2] {
-        Sobol::pair(sequence, l, id, slot, depth)
+    fn pair<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, slot: Slot) -> [L::Real; 2] {
+        Sobol::pair(sequence, l, id, slot)
     }
 }

@@ -25,48 +25,29 @@ pub trait Sampler {
     /// The numbers of a camera ray; those of the lens only where there is one.
     #[inline(always)]
     fn camera<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
-        let depth = l.int(0);
         CameraSample {
-            pixel: Self::pair(sequence, l, id, Slot::Pixel, depth),
-            wavelength: Self::single(sequence, l, id, Slot::Wavelength, depth),
+            pixel: Self::pair(sequence, l, id, Slot::Pixel),
+            wavelength: Self::single(sequence, l, id, Slot::Wavelength),
             lens: if lens {
-                Self::pair(sequence, l, id, Slot::Lens, depth)
+                Self::pair(sequence, l, id, Slot::Lens)
             } else {
                 [l.real(0.0); 2]
             },
         }
     }
 
-    /// One number of a slot at a bounce.
-    fn single<L: Lanes>(
-        sequence: &Sequence,
-        l: L,
-        id: Identity<L>,
-        slot: Slot,
-        depth: L::Int,
-    ) -> L::Real;
+    /// One number of a slot.
+    fn single<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, slot: Slot) -> L::Real;
 
-    /// Two numbers of a slot at a bounce.
-    fn pair<L: Lanes>(
-        sequence: &Sequence,
-        l: L,
-        id: Identity<L>,
-        slot: Slot,
-        depth: L::Int,
-    ) -> [L::Real; 2];
+    /// Two numbers of a slot.
+    fn pair<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, slot: Slot) -> [L::Real; 2];
 
-    /// Two numbers each of slots 2i and 2i + 1 at a bounce.
+    /// Two numbers each of [`Slot::Light`] and [`Slot::Bsdf`], which are wanted together.
     #[inline(always)]
-    fn two_pairs<L: Lanes>(
-        sequence: &Sequence,
-        l: L,
-        id: Identity<L>,
-        [slot, second]: [Slot; 2],
-        depth: L::Int,
-    ) -> [[L::Real; 2]; 2] {
+    fn light_and_bsdf<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>) -> [[L::Real; 2]; 2] {
         [
-            sequence.pair(l, id, slot, depth),
-            sequence.pair(l, id, second, depth),
+            sequence.pair(l, id, Slot::Light),
+            sequence.pair(l, id, Slot::Bsdf),
         ]
     }
 }

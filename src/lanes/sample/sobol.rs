@@ -44,26 +44,14 @@ impl Sampler for Sobol {
     }
 
     #[inline(always)]
-    fn single<L: Lanes>(
-        sequence: &Sequence,
-        l: L,
-        id: Identity<L>,
-        slot: Slot,
-        depth: L::Int,
-    ) -> L::Real {
-        let base = sequence.slot_seed(l, id, slot, depth);
+    fn single<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, slot: Slot) -> L::Real {
+        let base = sequence.slot_seed(l, id, slot);
         l.uniform(first(l, shuffled(l, id.index, base), base))
     }
 
     #[inline(always)]
-    fn pair<L: Lanes>(
-        sequence: &Sequence,
-        l: L,
-        id: Identity<L>,
-        slot: Slot,
-        depth: L::Int,
-    ) -> [L::Real; 2] {
-        let base = sequence.slot_seed(l, id, slot, depth);
+    fn pair<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, slot: Slot) -> [L::Real; 2] {
+        let base = sequence.slot_seed(l, id, slot);
         let index = shuffled(l, id.index, base);
         let second = scrambled(
             l,
