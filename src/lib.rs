@@ -237,7 +237,6 @@ pub mod inside {
     #[cfg(feature = "study")]
     rooms! { chart study }
 
-    #[cfg(feature = "planted")]
     pub use etalon_lanes::planted;
     pub use etalon_lanes::{
         camera, declare, field, integrate, light, material, math, root, sample, shape, spectrum,

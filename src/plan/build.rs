@@ -115,7 +115,6 @@ pub fn build<T: Scalar>(
         environment,
         spectra: builder.bank,
         resolver: builder.resolver,
-        #[cfg(feature = "planted")]
         planted: None,
     };
     Ok((model, Spectrometer::new(grid, choices.wavelengths as usize)))

@@ -21,7 +21,10 @@ pub(super) struct Materials {
 }
 
 /// The keys that say what a material is, in the order in which messages list them.
-static KINDS: LazyLock<Vec<&str>> = LazyLock::new(|| distinct(MaterialKind::KEYS));
+static KINDS: LazyLock<Vec<&str>> = LazyLock::new(|| {
+    let keys: Vec<&str> = declarations().map(|own| own.main.key).collect();
+    distinct(&keys)
+});
 /// All keys of a material.
 static KEYS: LazyLock<Vec<&str>> = LazyLock::new(|| {
     let beside = declarations().flat_map(|own| own.beside).map(|own| own.key);

@@ -12,6 +12,7 @@ use crate::material::{Material, Transport, each_material};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::lookup::SMALL;
 use crate::math::vec3::Vec3;
+use crate::planted::light_weight;
 use crate::sample::Slot;
 use crate::sample::mis::power_weight;
 use crate::sample::warp::cosine_hemisphere_pdf;
@@ -73,11 +74,8 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let light = self.sample_lights(l, meeting, m, numbers);
         let direction = light.towards.direction;
         let cosine = direction.dot(meeting.normal);
-        let mut weight = light.lambertian_weight(l, cosine);
-        #[cfg(feature = "planted")]
-        {
-            weight = crate::planted::light_weight(l, self.model.planted, weight, cosine);
-        }
+        let weight = light.lambertian_weight(l, cosine);
+        let mut weight = light_weight(l, self.model.planted, weight, cosine);
         let kinds = self.model.needs.materials;
         let mut scatters = cosine.gt(zero);
         let mut across = l.mask(false);

@@ -7,6 +7,7 @@ use crate::camera::LaneCamera;
 use crate::light::{LaneLight, SmallLights};
 use crate::material::Record;
 use crate::math::lanes::Scalar;
+use crate::planted::Planted;
 use crate::sample::sequence::Sequence;
 use crate::shape::hierarchy::{Bounds, Hierarchy, Item};
 use crate::shape::lanes::LaneShape;
@@ -122,8 +123,7 @@ pub struct Model<T: Scalar> {
     /// Decides what lanes cannot.
     pub resolver: Resolver,
     /// A deliberate mistake.
-    #[cfg(feature = "planted")]
-    pub planted: Option<crate::planted::Planted>,
+    pub planted: Option<Planted>,
 }
 
 impl<T: Scalar> Model<T> {

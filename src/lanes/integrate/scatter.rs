@@ -247,7 +247,6 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
                 fraction: &rows.fraction,
                 ended: has(l, self.paths.flags, flags::TERMINATED),
             },
-            #[cfg(feature = "planted")]
             planted: self.model.planted,
         };
         if M::NUMBERED {

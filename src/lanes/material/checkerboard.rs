@@ -2,15 +2,11 @@
 
 use glam::DVec3;
 
-use super::diffuse::Diffuse;
-use super::{
-    Densities, Event, Interface, Lanes, Material, MaterialKind, NUMBERS, SPECTRA, Transport,
-    Variates, Vec3,
-};
+use super::{Lanes, Material, MaterialKind, NUMBERS, SPECTRA, Vec3};
 use crate::declare::{Declaration, Parameter, Quantity, Range, Role};
 use crate::math::lanes::Real;
 
-/// [`Diffuse`], of the first albedo in cells whose numbers sum to an even one, else of the second.
+/// [`Diffuse`](super::diffuse::Diffuse), of the first albedo in cells whose numbers sum to an even one, else of the second.
 pub struct Checkerboard;
 
 impl Material for Checkerboard {
@@ -53,28 +49,5 @@ impl Material for Checkerboard {
         let [fx, fy, fz] = numbers;
         let half = (cell(local.x, fx) + cell(local.y, fy) + cell(local.z, fz)) * l.real(0.5);
         [l.select_int(half.same(half.floor()), even, odd), odd]
-    }
-
-    #[inline(always)]
-    fn sample<L: Lanes, const C: usize>(
-        l: L,
-        at: &Interface<'_, L, C>,
-        wo: Vec3<L::Real>,
-        transport: Transport,
-        u: Variates<L>,
-        weigh: impl FnMut(usize, &[L::Scalar; C]),
-    ) -> Event<L> {
-        Diffuse::sample(l, at, wo, transport, u, weigh)
-    }
-
-    #[inline(always)]
-    fn evaluate<L: Lanes, const C: usize>(
-        l: L,
-        at: &Interface<'_, L, C>,
-        directions: [Vec3<L::Real>; 2],
-        transport: Transport,
-        value: impl FnMut(usize, &[L::Scalar; C]),
-    ) -> Densities<L> {
-        Diffuse::evaluate(l, at, directions, transport, value)
     }
 }

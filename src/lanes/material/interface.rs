@@ -4,6 +4,7 @@ use super::{NUMBERS, SPECTRA};
 use crate::math::lanes::{Int, Lanes, Real, Scalar, WIDEST};
 use crate::math::packet::int_array;
 use crate::math::vec3::Vec3;
+use crate::planted::Planted;
 
 /// What a path carries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,8 +90,7 @@ pub struct Interface<'a, L: Lanes, const C: usize> {
     pub numbers: [L::Real; NUMBERS],
     pub wavelengths: Wavelengths<'a, L, C>,
     /// A deliberate mistake.
-    #[cfg(feature = "planted")]
-    pub planted: Option<crate::planted::Planted>,
+    pub planted: Option<Planted>,
 }
 
 impl<L: Lanes, const C: usize> Interface<'_, L, C> {

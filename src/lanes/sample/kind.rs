@@ -52,71 +52,16 @@ pub trait Sampler {
     }
 }
 
-macro_rules! samplers {
-    ($($kind:ident in $module:ident,)*) => {
-        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-        pub enum SamplerKind {
-            $(
-                #[doc = concat!("See [`", stringify!($kind), "`](super::", stringify!($module), "::", stringify!($kind), ").")]
-                $kind,
-            )*
-        }
-
-        impl SamplerKind {
-            /// All of them, the usual one first.
-            pub const ALL: &'static [Self] = &[$(Self::$kind,)*];
-        }
-
-        /// Evaluates an item of a kind's type.
-        macro_rules! of {
-            ($self:expr, $item:ident) => {
-                match $self {
-                    $($crate::sample::SamplerKind::$kind => $crate::sample::$module::$kind::$item,)*
-                }
-            };
-            ($self:expr, $item:ident $item_arguments:tt) => {
-                match $self {
-                    $(
-                        $crate::sample::SamplerKind::$kind => {
-                            $crate::sample::$module::$kind::$item $item_arguments
-                        }
-                    )*
-                }
-            };
-        }
-        pub(super) use of;
-    };
+kinds! {
+    SamplerKind of Sampler {
+        Sobol in sobol,
+        Independent in independent,
+        Stratified in stratified,
+        Center in center,
+    }
+    fn name(self) -> &'static str = NAME;
+    fn words(self) -> &'static str = WORDS;
+    fn needs_count(self) -> bool = NEEDS_COUNT;
+    fn is_centred(self) -> bool = CENTRED;
 }
-
-samplers! {
-    Sobol in sobol,
-    Independent in independent,
-    Stratified in stratified,
-    Center in center,
-}
-
-impl SamplerKind {
-    /// Its name in scene files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        of!(self, NAME)
-    }
-
-    /// [`Sampler::WORDS`].
-    #[must_use]
-    pub fn words(self) -> &'static str {
-        of!(self, WORDS)
-    }
-
-    /// [`Sampler::NEEDS_COUNT`].
-    #[must_use]
-    pub fn needs_count(self) -> bool {
-        of!(self, NEEDS_COUNT)
-    }
-
-    /// [`Sampler::CENTRED`].
-    #[must_use]
-    pub fn is_centred(self) -> bool {
-        of!(self, CENTRED)
-    }
-}
+pub(super) use of;
