@@ -51,3 +51,4 @@ mod study;
 mod truth_file;
 mod truths;
 mod wavelength_grid;
+mod wavelength_pdfs;

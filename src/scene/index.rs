@@ -94,7 +94,7 @@ fn sellmeier(spectra: &Spectra<'_>, path: &str, node: &Node) -> Option<Refractiv
     let c = fields.required("c", "c = [C1, C2, C3] in µm²", |what, node| {
         report.numbers(what, node)
     });
-    Some(RefractiveIndex::Sellmeier { b: b?, c: c? })
+    Some(RefractiveIndex::sellmeier(b?, c?))
 }
 
 /// n must be finite and at least 1 wherever light is seen.
