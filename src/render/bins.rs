@@ -12,7 +12,8 @@ use std::sync::Arc;
 use crate::film::pixels::Estimate;
 use crate::math::lanes::Scalar;
 use crate::sample::replicates::Replicates;
-use crate::spectrum::grid::{CELLS, LONGEST, SHORTEST, WavelengthGrid};
+use crate::spectrum::grid::{CELLS, WavelengthGrid};
+use crate::spectrum::{NM_MAX, NM_MIN};
 
 /// Neighbouring bins of equal width.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,7 +38,7 @@ pub struct Shares {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum BinError {
     /// A bin reaches out of the wavelengths that paths carry.
-    #[error("the bin at {centre} nm reaches out of {SHORTEST} nm to {LONGEST} nm")]
+    #[error("the bin at {centre} nm reaches out of {NM_MIN} nm to {NM_MAX} nm")]
     Outside {
         /// Its middle, nm.
         centre: f64,
@@ -66,7 +67,7 @@ impl BinGrid {
             .map(|i| from + f64::from(i) * step)
             .collect();
         let half = step / 2.0;
-        let inside = |c: f64| c - half >= SHORTEST && c + half <= LONGEST;
+        let inside = |c: f64| c - half >= NM_MIN && c + half <= NM_MAX;
         if let Some(&centre) = centres.iter().find(|&&c| !inside(c)) {
             return Err(BinError::Outside { centre });
         }

@@ -16,7 +16,8 @@ use etalon::inside::math::lanes::Scalar;
 use etalon::inside::plan::Tables;
 #[cfg(feature = "planted")]
 use etalon::inside::planted::Planted;
-use etalon::inside::spectrum::grid::{CELLS, LONGEST, SHORTEST, WavelengthGrid};
+use etalon::inside::spectrum::grid::{CELLS, WavelengthGrid};
+use etalon::inside::spectrum::{NM_MAX, NM_MIN};
 use etalon::{Plan, Scene};
 
 /// What can be wrong.
@@ -216,7 +217,7 @@ fn polarisation<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
 /// in an emission.
 fn wavelengths<T: Scalar>(model: &mut Model<T>) -> bool {
     let factor = |nm: f64| {
-        let turns = (nm - SHORTEST) / (LONGEST - SHORTEST);
+        let turns = (nm - NM_MIN) / (NM_MAX - NM_MIN);
         1.0 / (1.0 + DENSITY_ERROR * (2.0 * std::f64::consts::TAU * turns).sin())
     };
     if let Some(environment) = model.environment {

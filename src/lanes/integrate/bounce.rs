@@ -29,13 +29,13 @@ pub struct Step<'a, L: Lanes, const C: usize> {
     pub model: &'a Model<L::Scalar>,
     /// Where spectra and results stand.
     pub workspace: &'a mut Workspace<L::Scalar, C>,
-    /// As they were read; their flags change on the way.
+    /// As the pool had them, but for flags that change on the way.
     pub paths: Paths<L>,
     /// Where the spectra of each lane are.
     pub slots: [u32; WIDEST],
 }
 
-/// Advances the packet at `at` by one segment, writes the paths that go on down from `to` ≤ `at` on and
+/// Advances the packet at `at` by one segment, writes the paths that go on from place `to` ≤ `at` on, and
 /// returns their number.
 #[inline(always)]
 pub fn bounce<L: Lanes, const C: usize>(
@@ -68,9 +68,7 @@ pub fn bounce<L: Lanes, const C: usize>(
         step.add(l, active & !hit, l.int(environment), l.real(1.0));
     }
     let surface = surfaces(l, model, &arrival, hit);
-    if step.workspace.trace.is_some() {
-        step.note_arrival(l, &arrival, &surface);
-    }
+    step.note_arrival(l, &arrival, &surface);
     let going = step.arrive(l, &surface, hit);
     let meeting = Meeting {
         surface: &surface,
@@ -91,7 +89,7 @@ pub fn bounce<L: Lanes, const C: usize>(
             | bit_where(l, next.inward, flags::INWARD)
             | bit_where(l, next.specular, flags::SPECULAR),
         id: Identity {
-            bounce: paths.id.bounce.plus(l.int(1)),
+            bounce: step.depth(l),
             ..paths.id
         },
         slot: l.load_int(&step.slots),
@@ -116,12 +114,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         }
         let scatters = hit & !surface.kind.same(l.int(MaterialKind::Black as u32));
         let beyond = has(l, self.paths.flags, flags::BEYOND);
-        let within = self
-            .paths
-            .id
-            .bounce
-            .plus(l.int(1))
-            .below(l.int(model.max_depth));
+        let within = self.depth(l).below(l.int(model.max_depth));
         let mut going = scatters & (within | beyond);
         let cut = scatters & !going;
         if cut.any() {
@@ -133,34 +126,19 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         going
     }
 
-    /// Writes down lane 0 on arrival.
-    #[cold]
-    fn note_arrival(&mut self, l: L, arrival: &Arrival<'_, L>, surface: &Surfaces<L>) {
-        let set = |m: L::Mask| m.bits() & 1 == 1;
-        let rays = arrival.rays;
-        let vertex = Vertex {
-            depth: l.int_lane(self.paths.id.bounce, 0),
-            origin: lane_vector(l, rays.ray.origin, 0),
-            direction: lane_vector(l, rays.ray.direction, 0),
-            distance: l.lane(arrival.nearest.t, 0).to_f64(),
-            object: some_object(l.int_lane(surface.object, 0)),
-            point: lane_vector(l, surface.point, 0),
-            normal: lane_vector(l, surface.normal, 0),
-            front: set(surface.front),
-            arrival_pdf: (!set(arrival.specular)).then(|| l.lane(arrival.pdf, 0).to_f64()),
-            emission_weight: set(surface.emits)
-                .then(|| l.lane(surface.emission_weight, 0).to_f64()),
-            throughput: self.carried().throughput.map(Scalar::to_f64).to_vec(),
-            light: None,
-            scattered: None,
-            radiance: Vec::new(),
-        };
-        self.workspace.trace.get_or_insert_default().push(vertex);
+    /// Number of segments traced, this one included.
+    #[inline(always)]
+    fn depth(&self, l: L) -> L::Int {
+        self.paths.id.bounce.plus(l.int(1))
     }
 
-    /// What lane 0 carries.
-    fn carried(&self) -> &Carried<L::Scalar, C> {
-        &self.workspace.rows.paths[self.slots[0] as usize]
+    /// Throughput and radiance of lane 0.
+    fn carried(&self) -> [Vec<f64>; 2] {
+        let Carried {
+            throughput,
+            radiance,
+        } = self.workspace.rows.paths[self.slots[0] as usize];
+        [throughput, radiance].map(|spectrum| spectrum.map(Scalar::to_f64).to_vec())
     }
 
     /// The vertex that is being written down, of lane 0.
@@ -169,21 +147,32 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         self.workspace.trace.as_mut()?.last_mut()
     }
 
+    /// Writes down where lane 0 has come to.
+    #[inline(always)]
+    fn note_arrival(&mut self, l: L, arrival: &Arrival<'_, L>, surface: &Surfaces<L>) {
+        if self.workspace.trace.is_some() {
+            let mut vertex = arrival.vertex(l, surface);
+            vertex.depth = l.int_lane(self.paths.id.bounce, 0);
+            [vertex.throughput, _] = self.carried();
+            self.workspace.trace.get_or_insert_default().push(vertex);
+        }
+    }
+
     /// Writes down how lane 0 goes on.
     #[inline(always)]
     fn note_end(&mut self, l: L, next: &Scattered<L>, alive: L::Mask) {
-        let Carried {
-            throughput,
-            radiance,
-        } = *self.carried();
+        if self.workspace.trace.is_none() {
+            return;
+        }
+        let [throughput, radiance] = self.carried();
         if let Some(vertex) = self.vertex() {
             let specular = next.specular.bits() & 1 == 1;
             vertex.scattered = (alive.bits() & 1 == 1).then(|| ScatteredVertex {
                 direction: lane_vector(l, next.direction, 0),
                 pdf: (!specular).then(|| l.lane(next.pdf, 0).to_f64()),
-                throughput: throughput.map(Scalar::to_f64).to_vec(),
+                throughput,
             });
-            vertex.radiance = radiance.map(Scalar::to_f64).to_vec();
+            vertex.radiance = radiance;
         }
     }
 
@@ -257,13 +246,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     /// Ends paths with the probability that their throughput is lost anyway, and rewards the rest.
     #[inline(always)]
     fn roulette(&mut self, l: L, going: L::Mask) -> L::Mask {
-        let late = going
-            & !self
-                .paths
-                .id
-                .bounce
-                .plus(l.int(1))
-                .below(l.int(ROULETTE_FROM));
+        let late = going & !self.depth(l).below(l.int(ROULETTE_FROM));
         if !late.any() {
             return going;
         }

@@ -45,7 +45,7 @@ pub struct Requests {
 }
 
 impl Requests {
-    /// Forgets all.
+    /// Removes all.
     #[inline]
     pub fn clear(&mut self) {
         for column in [&mut self.x, &mut self.y, &mut self.sample] {
@@ -70,13 +70,11 @@ impl Requests {
         self.length = length;
     }
 
-    /// Their number.
     #[inline]
     pub fn len(&self) -> usize {
         self.length
     }
 
-    /// Whether there are none.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.length == 0

@@ -3,6 +3,7 @@
 
 use super::bounce::{Step, some_object};
 use super::intersect::{NOTHING, Rays, Shadow, lane_vector, occluded};
+use super::model::Model;
 use super::pool::{WIDEST, array, each};
 use super::replay::LightVertex;
 use super::scatter::{Meeting, Question};
@@ -15,6 +16,7 @@ use crate::math::vec3::Vec3;
 use crate::planted::light_weight;
 use crate::sample::Slot;
 use crate::sample::mis::power_weight;
+use crate::sample::sequence::Identity;
 use crate::sample::warp::cosine_hemisphere_pdf;
 use crate::shape::lanes::LaneRay;
 
@@ -99,16 +101,19 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             }
         });
         let asked = m & light.towards.valid & scatters & weight.gt(zero);
-        let shadow = Shadow {
-            rays: Rays {
-                ray: LaneRay::new(l, meeting.surface.point, direction),
-                leaving: meeting.surface.object,
-                inward: meeting.inward(across),
-            },
-            limit: light.towards.distance,
-            except: light.object,
-        };
-        let arrives = self.arrives(l, &shadow, asked, weight);
+        let mut arrives = asked;
+        if asked.any() {
+            let shadow = Shadow {
+                rays: Rays {
+                    ray: LaneRay::new(l, meeting.surface.point, direction),
+                    leaving: meeting.surface.object,
+                    inward: meeting.inward(across),
+                },
+                limit: light.towards.distance,
+                except: light.object,
+            };
+            arrives = self.arrives(l, &shadow, asked, weight);
+        }
         Lit {
             arrives,
             spectrum: light.spectrum,
@@ -211,9 +216,6 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     /// Where nothing stands between a surface and its light, of the lanes that ask.
     #[inline(always)]
     fn arrives(&mut self, l: L, shadow: &Shadow<L>, asked: L::Mask, weight: L::Real) -> L::Mask {
-        if !asked.any() {
-            return asked;
-        }
         let rungs = &mut self.workspace.rungs;
         let blocked = occluded(l, self.model, shadow, asked, rungs);
         if asked.bits() & 1 == 1
@@ -243,7 +245,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             return (chosen, u);
         }
         if others.len() >= SMALL {
-            return (self.choose_among_many(l, m), u);
+            return (choose_among_many(l, self.model, self.paths.id, m), u);
         }
         let mut below = l.splat(first.below);
         let mut probability = l.splat(first.probability);
@@ -257,19 +259,23 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let stretched = ((u - below) / probability).min(l.real(largest));
         (chosen, stretched)
     }
+}
 
-    /// The number of each lane's light where a share of the numbers' digits would be too coarse for
-    /// its point, and looking at every light too slow.
-    #[inline(never)]
-    fn choose_among_many(&self, l: L, m: L::Mask) -> L::Int {
-        let sequence = &self.model.sequence;
-        let variates = array(l, sequence.single(l, self.paths.id, Slot::Choice));
-        let lights = &self.model.lights;
-        let mut chosen = [0; WIDEST];
-        for i in each(m.bits()) {
-            let later = lights.partition_point(|light| light.below <= variates[i % WIDEST]);
-            chosen[i % WIDEST] = later.saturating_sub(1) as u32;
-        }
-        l.load_int(&chosen)
+/// The number of each lane's light where a share of the numbers' digits would be too coarse for its
+/// point, and looking at every light too slow.
+#[inline(never)]
+fn choose_among_many<L: Lanes>(
+    l: L,
+    model: &Model<L::Scalar>,
+    id: Identity<L>,
+    m: L::Mask,
+) -> L::Int {
+    let variates = array(l, model.sequence.single(l, id, Slot::Choice));
+    let mut chosen = [0; WIDEST];
+    for i in each(m.bits()) {
+        let lights = &model.lights;
+        let later = lights.partition_point(|light| light.below <= variates[i % WIDEST]);
+        chosen[i % WIDEST] = later.saturating_sub(1) as u32;
     }
+    l.load_int(&chosen)
 }

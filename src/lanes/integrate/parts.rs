@@ -48,7 +48,7 @@ pub const NO_LIGHT: u32 = u32::MAX;
 /// What is known of parts, as reals R and integers I: of one part ([`Entry`]), of a few as tables to
 /// look numbers up in ([`SmallTable`]), or of those that a packet has met.
 #[derive(Debug, Clone, Copy)]
-pub struct Look<R, I> {
+pub struct PartData<R, I> {
     /// [`Part::vector`].
     pub vector: [R; 3],
     /// [`Part::level`].
@@ -68,10 +68,10 @@ pub struct Look<R, I> {
 }
 
 /// One part.
-pub type Entry<T> = Look<T, u32>;
+pub type Entry<T> = PartData<T, u32>;
 
 /// Up to [`SMALL`] parts by column.
-pub type SmallTable<T> = Look<[T; SMALL], [u32; SMALL]>;
+pub type SmallTable<T> = PartData<[T; SMALL], [u32; SMALL]>;
 
 impl<T: Scalar> Entry<T> {
     fn new(object: u32, part: &Part<T>, closed: bool, appearance: &Appearance<T>) -> Self {

@@ -14,13 +14,13 @@ use crate::math::lanes::{Int, Lanes, Mask, Scalar};
 use crate::math::vec3::Vec3;
 use crate::sample::Slot;
 
-/// A packet of surfaces, as a path sees them that has come there.
+/// A packet of surfaces, seen from the side on which paths arrive.
 pub struct Meeting<'a, L: Lanes> {
     /// The surfaces.
     pub surface: &'a Surfaces<L>,
     /// Unit directions towards where the paths come from.
     pub wo: Vec3<L::Real>,
-    /// Unit normals on their side.
+    /// Unit normals on that side.
     pub normal: Vec3<L::Real>,
     /// Lanes that go on from here.
     pub going: L::Mask,

@@ -1,12 +1,14 @@
 //! What a packet of hits looks like: geometry, appearance, emission.
 
-use super::intersect::{NOTHING, Nearest, Rays};
+use super::bounce::some_object;
+use super::intersect::{NOTHING, Nearest, Rays, lane_vector};
 use super::model::Model;
 use super::needs::Needs;
-use super::parts::{Entry, Look, NO_LIGHT, SmallTable, word};
+use super::parts::{Entry, NO_LIGHT, PartData, SmallTable, word};
 use super::pool::has;
+use super::replay::Vertex;
 use crate::material::{MaterialKind, SPECTRA};
-use crate::math::lanes::{Int, Lanes, Mask, Real};
+use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::lookup::SMALL;
 use crate::math::vec3::Vec3;
 use crate::sample::mis::power_weight;
@@ -47,6 +49,36 @@ pub struct Arrival<'a, L: Lanes> {
     pub pdf: L::Real,
     /// Light sampling could not have found it.
     pub specular: L::Mask,
+}
+
+impl<L: Lanes> Arrival<'_, L> {
+    /// Lane 0 as it is written down, without what its path carries.
+    #[cold]
+    pub fn vertex(&self, l: L, surface: &Surfaces<L>) -> Vertex {
+        let set = |m: L::Mask| m.bits() & 1 == 1;
+        let Self {
+            rays: Rays { ray, .. },
+            nearest,
+            ..
+        } = self;
+        Vertex {
+            depth: 0,
+            origin: lane_vector(l, ray.origin, 0),
+            direction: lane_vector(l, ray.direction, 0),
+            distance: l.lane(nearest.t, 0).to_f64(),
+            object: some_object(l.int_lane(surface.object, 0)),
+            point: lane_vector(l, surface.point, 0),
+            normal: lane_vector(l, surface.normal, 0),
+            front: set(surface.front),
+            arrival_pdf: (!set(self.specular)).then(|| l.lane(self.pdf, 0).to_f64()),
+            emission_weight: set(surface.emits)
+                .then(|| l.lane(surface.emission_weight, 0).to_f64()),
+            throughput: Vec::new(),
+            light: None,
+            scattered: None,
+            radiance: Vec::new(),
+        }
+    }
 }
 
 /// Gathers what the loop needs to know about each hit.
@@ -165,7 +197,7 @@ fn looked_up<L: Lanes>(
     part: L::Int,
     needs: Needs,
     hit: L::Mask,
-) -> Look<L::Real, L::Int> {
+) -> PartData<L::Real, L::Int> {
     // Lanes that have hit nothing read some entry, and what it says is not used.
     let part = l.select_int(hit, part, l.int(0));
     let real = inlined!(|column: &[L::Scalar; SMALL]| l.lookup(column, part));
@@ -176,7 +208,7 @@ fn looked_up<L: Lanes>(
     if needs.has(word::EMITS) {
         (emission, light) = (int(&table.emission), int(&table.light));
     }
-    Look {
+    PartData {
         vector: [real(x), real(y), real(z)],
         level: real(&table.level),
         half: if needs.has(word::FACES) {
@@ -199,9 +231,9 @@ fn one_by_one<L: Lanes>(
     entries: &[Entry<L::Scalar>],
     part: L::Int,
     hit: L::Mask,
-) -> Look<L::Real, L::Int> {
+) -> PartData<L::Real, L::Int> {
     let (nothing, none) = (l.real(0.0), l.int(0));
-    let mut out = Look {
+    let mut out = PartData {
         vector: [nothing, nothing, l.real(1.0)],
         level: nothing,
         half: nothing,

@@ -28,11 +28,11 @@ impl Material for Conductor {
         let (cosine, mirrored) = at.mirrored(l, wo);
         let indices = at.wavelengths.rows(l, at.spectra[0]);
         let extinctions = at.wavelengths.rows(l, at.spectra[1]);
-        let outside = at.index(l, at.outside);
+        let outside = at.index_rows(l, at.outside);
         let cosines = array(l, cosine);
         for i in each(at.lanes.bits()) {
             let (n, k) = (at.values(i, &indices), at.values(i, &extinctions));
-            let around = outside.at(i);
+            let around = at.index(i, &outside);
             let mut reflectance = *n;
             for c in 0..C {
                 let (n, k) = (n[c] / around[c], k[c] / around[c]);

@@ -100,15 +100,23 @@ impl<L: Lanes, const C: usize> Interface<'_, L, C> {
         &self.wavelengths.bank[rows[i % WIDEST] as usize]
     }
 
-    /// The refractive indices of a medium, to be asked lane by lane.
+    /// The bank's rows that hold the refractive index of a medium at each lane's wavelengths; `None` for
+    /// the vacuum.
     #[inline(always)]
-    pub fn index(&self, l: L, medium: Medium<L>) -> Indices<'_, L, C> {
-        Indices {
-            wavelengths: &self.wavelengths,
-            rows: match medium {
-                Medium::Vacuum => None,
-                Medium::Index([n, _]) => Some(self.wavelengths.rows(l, n)),
-            },
+    pub fn index_rows(&self, l: L, medium: Medium<L>) -> Option<[u32; WIDEST]> {
+        match medium {
+            Medium::Vacuum => None,
+            Medium::Index([n, _]) => Some(self.wavelengths.rows(l, n)),
+        }
+    }
+
+    /// The refractive index of a medium at lane i's wavelengths; `rows` are those of
+    /// [`Self::index_rows`].
+    #[inline(always)]
+    pub fn index(&self, i: usize, rows: &Option<[u32; WIDEST]>) -> [L::Scalar; C] {
+        match rows {
+            None => [L::Scalar::from_f64(1.0); C],
+            Some(rows) => self.wavelengths.between_nodes(i, rows[i]),
         }
     }
 
@@ -118,23 +126,6 @@ impl<L: Lanes, const C: usize> Interface<'_, L, C> {
         let cosine = wo.dot(self.shading).max(l.real(0.0)).min(l.real(1.0));
         let mirrored = (-wo).along(self.shading, cosine + cosine);
         (cosine, mirrored)
-    }
-}
-
-/// Refractive indices of a medium, nodes in the bank.
-pub struct Indices<'a, L: Lanes, const C: usize> {
-    wavelengths: &'a Wavelengths<'a, L, C>,
-    rows: Option<[u32; WIDEST]>,
-}
-
-impl<L: Lanes, const C: usize> Indices<'_, L, C> {
-    /// At lane i's wavelengths.
-    #[inline(always)]
-    pub fn at(&self, i: usize) -> [L::Scalar; C] {
-        match &self.rows {
-            None => [L::Scalar::from_f64(1.0); C],
-            Some(rows) => self.wavelengths.between_nodes(i, rows[i]),
-        }
     }
 }
 

@@ -10,13 +10,9 @@
 //! anything constant over a cell are exact; *node* rows (refractive indices) hold values at the
 //! cells' lower ends, linear between.
 
-use super::Spectrum;
+use super::{NM_MAX, NM_MIN, Spectrum};
 use crate::math::lanes::Scalar;
 
-/// Shortest wavelength, nm.
-pub const SHORTEST: f64 = 360.0;
-/// Longest wavelength, nm.
-pub const LONGEST: f64 = 830.0;
 /// Number of cells, a multiple of every number of wavelengths.
 pub const CELLS: usize = 4096;
 
@@ -33,7 +29,7 @@ const TANH_SPAN: f64 = 1.827_501_972_410_097_8;
 /// parameters of pbrt-v4 and Mitsuba 3).
 pub fn visible_wavelength(u: f64) -> f64 {
     let nm = PEAK - libm::atanh(TANH_LOW - u * TANH_SPAN) / STEEPNESS;
-    nm.clamp(SHORTEST, LONGEST)
+    nm.clamp(NM_MIN, NM_MAX)
 }
 
 /// The inverse of the cumulative density by which heroes are drawn: [`visible_wavelength`] at the
@@ -51,9 +47,9 @@ pub struct WavelengthGrid {
 impl Default for WavelengthGrid {
     fn default() -> Self {
         let inner = (1..CELLS).map(|cell| visible_wavelength(cell as f64 / CELLS as f64));
-        let lower = [SHORTEST].into_iter().chain(inner);
+        let lower = [NM_MIN].into_iter().chain(inner);
         Self {
-            edges: lower.chain([LONGEST]).collect(),
+            edges: lower.chain([NM_MAX]).collect(),
         }
     }
 }
@@ -64,7 +60,7 @@ impl WavelengthGrid {
         let even = Self::default();
         let mut jumps: Vec<f64> = Vec::new();
         for [from, to] in spectra.into_iter().flat_map(Spectrum::rises) {
-            let inside = from > SHORTEST && to < LONGEST;
+            let inside = from > NM_MIN && to < NM_MAX;
             // Across several cells, a spectrum is as good as smooth.
             if inside && to - from < even.width_at(from) {
                 jumps.extend([from, to]);
