@@ -81,6 +81,7 @@ pub fn luminance(rgb: [f64; 3]) -> f64 {
 }
 
 /// Linear sRGB of XYZ (D65 white, no adaptation); components may be negative or above 1.
+#[inline]
 pub fn xyz_to_linear_srgb(xyz: [f64; 3]) -> [f64; 3] {
     XYZ_TO_LINEAR_SRGB.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])
 }
