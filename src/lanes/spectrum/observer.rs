@@ -76,6 +76,7 @@ pub fn spectrum_to_xyz(spectrum: &Spectrum) -> [f64; 3] {
 }
 
 /// Luminance of linear R, G, B: Rec. ITU-R BT.709-6, item 3.2.
+#[inline]
 pub fn luminance(rgb: [f64; 3]) -> f64 {
     0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
 }
