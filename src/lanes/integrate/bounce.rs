@@ -25,13 +25,11 @@ pub const BEYOND_SHARE: f64 = 1.0 / 16.0;
 
 /// A packet of paths on its way through the step.
 pub struct Step<'a, L: Lanes, const C: usize> {
-    /// The scene's tables.
     pub model: &'a Model<L::Scalar>,
-    /// Where spectra and results stand.
     pub workspace: &'a mut Workspace<L::Scalar, C>,
     /// As the pool had them, but for flags that change on the way.
     pub paths: Paths<L>,
-    /// Where the spectra of each lane are.
+    /// Where the spectra of each lane are among the rows.
     pub slots: [u32; WIDEST],
 }
 

@@ -13,7 +13,7 @@ use crate::spectrum::grid::CELLS;
 
 /// Most samples of a chunk.
 pub const CHUNK: usize = 4096;
-/// 0, 1, 2 …
+/// The number of each lane.
 const LANE_NUMBERS: [u32; WIDEST] = {
     let mut numbers = [0; WIDEST];
     let mut i = 0;
@@ -45,7 +45,6 @@ pub struct Requests {
 }
 
 impl Requests {
-    /// Removes all.
     #[inline]
     pub fn clear(&mut self) {
         for column in [&mut self.x, &mut self.y, &mut self.sample] {
@@ -84,9 +83,9 @@ impl Requests {
 /// What `max_depth` cuts off, as sums over camera samples of their luminance beyond it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Beyond {
-    /// Σ Y.
+    /// Σ Y over the samples.
     pub sum: f64,
-    /// Σ Y².
+    /// Σ Y² over the samples.
     pub squares: f64,
 }
 
@@ -103,11 +102,11 @@ pub struct Workspace<T, const C: usize> {
     pub(super) values: [[T; C]; WIDEST],
     /// X, Y, Z by sample.
     pub tristimulus: Vec<[T; 3]>,
-    /// Which arithmetic decided.
+    /// Which arithmetic decided about rays.
     pub rungs: Rungs,
     /// What `max_depth` cut off.
     pub beyond: Beyond,
-    /// The vertices of a single request, to be written down.
+    /// The vertices of a single request, where they are to be written down.
     pub trace: Option<Vec<Vertex>>,
 }
 

@@ -22,9 +22,9 @@ use crate::shape::lanes::LaneRay;
 
 /// What arrives from sampled lights.
 pub struct Lit<L: Lanes> {
-    /// Where it does.
+    /// Lanes in which some does.
     pub arrives: L::Mask,
-    /// Spectrum of the light.
+    /// Where the light's spectrum stands in the bank.
     pub spectrum: L::Int,
     /// What its spectrum is multiplied with beside throughput and bsdf, or albedo where the material
     /// is Lambertian; 0 where it is hidden.
@@ -35,7 +35,7 @@ pub struct Lit<L: Lanes> {
 pub struct Sampled<L: Lanes> {
     /// How they are seen; the density contains the probability of the light.
     pub towards: Towards<L>,
-    /// Spectra of the lights.
+    /// Where the lights' spectra stand in the bank.
     pub spectrum: L::Int,
     pub object: L::Int,
     /// Scattered rays can hit them.

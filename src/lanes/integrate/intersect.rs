@@ -1,4 +1,5 @@
-//! Rays against the scene: the index of shapes in lanes, and the ladder for what is left.
+//! Rays against the scene: objects in lanes first, then the certified ladder for what lanes leave
+//! undecided.
 
 use glam::DVec3;
 
@@ -21,7 +22,6 @@ pub const NOTHING: u32 = u32::MAX;
 /// How many rays each kind of arithmetic has decided.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Rungs {
-    /// Rays asked about.
     pub rays: u64,
     /// Rays that lanes left undecided.
     pub undecided: u64,
@@ -32,7 +32,6 @@ pub struct Rungs {
 }
 
 impl Rungs {
-    /// The sums of both.
     pub fn joined(self, other: Self) -> Self {
         Self {
             rays: self.rays + other.rays,
@@ -64,11 +63,11 @@ pub struct Nearest<L: Lanes> {
 /// Rays towards lights.
 #[derive(Clone, Copy)]
 pub struct Shadow<L: Lanes> {
-    /// From the surface.
+    /// From surfaces.
     pub rays: Rays<L>,
-    /// Distance of the light.
+    /// Distances of the lights.
     pub limit: L::Real,
-    /// The light itself, which does not hide its own point.
+    /// The objects of the lights themselves, which do not hide their own points.
     pub except: L::Int,
 }
 
@@ -221,7 +220,8 @@ impl<L: Lanes> Query<'_, L> {
         implicit.first_hit(l, &question, tally)
     }
 
-    /// Has the ladder `decide` about the lanes in `unsure`: whatever they meet before `limit`.
+    /// Calls `decide` with each lane of `unsure` and what the ladder has to decide about it: the objects
+    /// that its ray may meet before `limit`.
     #[inline(always)]
     fn resolve(
         &self,
@@ -269,10 +269,10 @@ pub(super) struct Search<R, I> {
     pub field_part: I,
 }
 
-/// Of a packet.
+/// The search of each ray of a packet.
 pub(super) type Searches<L> = Search<<L as Lanes>::Real, <L as Lanes>::Int>;
 
-/// The closest hits.
+/// The search for the closest hits.
 impl<L: Lanes> Query<'_, L> {
     #[inline(always)]
     pub fn nothing_yet(&self) -> Searches<L> {

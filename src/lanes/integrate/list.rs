@@ -14,15 +14,14 @@ const SEVERAL: usize = 3;
 /// The objects of a list, by how they are asked.
 #[derive(Debug, Clone)]
 pub struct List<T> {
-    /// All, in order.
+    /// All their numbers, in order.
     pub objects: Vec<u32>,
-    /// Those that are asked alone.
+    /// The objects that packets ask one after the other.
     alone: Vec<u32>,
-    /// Balls that are asked together.
     groups: Vec<Group<T>>,
 }
 
-/// Balls that are asked together.
+/// Balls of which each ray asks those that it comes near.
 #[derive(Debug, Clone)]
 struct Group<T> {
     balls: Balls<T>,

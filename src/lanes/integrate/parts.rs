@@ -1,4 +1,5 @@
-//! What the loop knows of each part of each object, by the part's number.
+//! The parts of objects (faces, curved walls), numbered throughout a scene, and what a hit on each needs:
+//! geometry, material, emission.
 
 use super::model::Appearance;
 use crate::material::SPECTRA;
@@ -11,22 +12,21 @@ use crate::shape::lanes::part::{Part, PartKind};
 pub mod word {
     /// Mask of the [`MaterialKind`](crate::material::MaterialKind).
     pub const KIND: u32 = 0xff;
-    /// Two parallel faces.
+    /// A pair of parallel faces.
     pub const FACES: u32 = 1 << 8;
     pub const BALL: u32 = 1 << 9;
-    /// A shape that computes its own surface.
+    /// The shape itself computes points and normals.
     pub const OTHER: u32 = 1 << 10;
     /// Refraction by the material disperses.
     pub const DISPERSES: u32 = 1 << 11;
-    /// The spectra depend on the place.
+    /// A texture chooses the spectra by the place.
     pub const TEXTURED: u32 = 1 << 12;
-    /// The outward side emits.
+    /// The outward side (+z of flat shapes) emits.
     pub const EMITS_FRONT: u32 = 1 << 13;
     /// The other side emits.
     pub const EMITS_BACK: u32 = 1 << 14;
     /// Part of a convex closed shape, whose exits are seen from inside.
     pub const CLOSED: u32 = 1 << 15;
-    /// Either side emits.
     pub const EMITS: u32 = EMITS_FRONT | EMITS_BACK;
 
     /// The branches of the loop that bits of words open.
@@ -45,7 +45,7 @@ pub mod word {
 /// Marks objects that no light stands for.
 pub const NO_LIGHT: u32 = u32::MAX;
 
-/// What is known of parts, as reals R and integers I: of one part ([`Entry`]), of a few as tables to
+/// The numbers of parts, as reals R and integers I: of one part ([`Entry`]), of a few as tables to
 /// look numbers up in ([`SmallTable`]), or of those that a packet has met.
 #[derive(Debug, Clone, Copy)]
 pub struct PartData<R, I> {
@@ -67,10 +67,10 @@ pub struct PartData<R, I> {
     pub light: I,
 }
 
-/// One part.
+/// The numbers of one part.
 pub type Entry<T> = PartData<T, u32>;
 
-/// Up to [`SMALL`] parts by column.
+/// The numbers of up to [`SMALL`] parts by column.
 pub type SmallTable<T> = PartData<[T; SMALL], [u32; SMALL]>;
 
 impl<T: Scalar> Entry<T> {
@@ -115,12 +115,12 @@ pub struct Parts<T> {
     pub entries: Vec<Entry<T>>,
     /// Number of each object's first part.
     pub first: Vec<u32>,
-    /// The entries once more, where they are few.
+    /// The entries by column, where they are few.
     pub small: Option<Box<SmallTable<T>>>,
 }
 
 impl<T: Scalar> Parts<T> {
-    /// Of objects with their appearance.
+    /// The parts of shapes whose objects look like this.
     pub fn new(shapes: &[LaneShape<T>], appearances: &[Appearance<T>]) -> Self {
         let mut parts = Self::default();
         for (k, (shape, appearance)) in shapes.iter().zip(appearances).enumerate() {

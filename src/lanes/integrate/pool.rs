@@ -29,7 +29,7 @@ pub struct Paths<L: Lanes> {
     pub direction: Vec3<L::Real>,
     /// Solid-angle densities with which the directions were chosen, sr⁻¹.
     pub pdf: L::Real,
-    /// Objects that the segments leave.
+    /// Objects that the segments leave, or [`NOTHING`](super::intersect::NOTHING).
     pub leaving: L::Int,
     /// Bits of [`flags`].
     pub flags: L::Int,
@@ -54,7 +54,7 @@ impl<L: Lanes> Paths<L> {
     }
 }
 
-/// What is known of a path besides numbers.
+/// Truths about a path, one a bit.
 pub mod flags {
     /// The segment goes into the object it leaves.
     pub const INWARD: u32 = 1;
@@ -79,14 +79,14 @@ pub struct Pool<T> {
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub struct Carried<T, const C: usize> {
-    /// Throughput of the path so far.
+    /// Product of bsdf · |cos|/pdf over the vertices so far.
     pub throughput: [T; C],
-    /// Radiance gathered.
+    /// Radiance gathered so far, W·m⁻²·sr⁻¹·nm⁻¹.
     pub radiance: [T; C],
 }
 
 impl<T: Scalar, const C: usize> Carried<T, C> {
-    /// Multiplies the throughput.
+    /// Multiplies the throughput by a factor at each wavelength.
     #[inline(always)]
     pub fn weigh(&mut self, factors: &[T; C]) {
         for (throughput, factor) in self.throughput.iter_mut().zip(factors) {
@@ -104,7 +104,7 @@ impl<T: Scalar, const C: usize> Carried<T, C> {
     }
 }
 
-/// Of a path at the camera.
+/// What a path carries at the camera.
 impl<T: Scalar, const C: usize> Default for Carried<T, C> {
     #[inline(always)]
     fn default() -> Self {
@@ -129,7 +129,7 @@ pub struct Rows<T, const C: usize> {
 }
 
 impl<T: Scalar, const C: usize> Rows<T, C> {
-    /// Room for `samples` samples.
+    /// Rows for so many samples.
     pub fn new(samples: usize) -> Self {
         Self {
             paths: vec![Carried::default(); samples],

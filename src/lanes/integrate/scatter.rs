@@ -16,7 +16,6 @@ use crate::sample::Slot;
 
 /// A packet of surfaces, seen from the side on which paths arrive.
 pub struct Meeting<'a, L: Lanes> {
-    /// The surfaces.
     pub surface: &'a Surfaces<L>,
     /// Unit directions towards where the paths come from.
     pub wo: Vec3<L::Real>,
@@ -43,7 +42,6 @@ impl<L: Lanes> Meeting<'_, L> {
 
 /// What a material is asked about, and where its answers go.
 pub struct Question<'a, L: Lanes, const C: usize> {
-    /// The surfaces as it sees them.
     pub at: Interface<'a, L, C>,
     /// Throughputs and radiances.
     pub paths: &'a mut [Carried<L::Scalar, C>],
@@ -51,15 +49,15 @@ pub struct Question<'a, L: Lanes, const C: usize> {
     pub values: &'a mut [[L::Scalar; C]; WIDEST],
 }
 
-/// The rays that go on.
+/// The rays with which paths go on.
 pub struct Scattered<L: Lanes> {
     /// Unit directions.
     pub direction: Vec3<L::Real>,
     /// Their densities, sr⁻¹.
     pub pdf: L::Real,
-    /// They had no alternative.
+    /// The direction was the only one possible.
     pub specular: L::Mask,
-    /// They go into the objects.
+    /// The ray goes into the object.
     pub inward: L::Mask,
 }
 
@@ -214,7 +212,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         }
     }
 
-    /// What a material is asked about.
+    /// What a material is asked about in the given lanes.
     #[inline(always)]
     pub fn question<M: Material>(
         &mut self,

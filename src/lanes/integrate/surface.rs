@@ -1,4 +1,4 @@
-//! What a packet of hits looks like: geometry, appearance, emission.
+//! The surfaces that a packet of rays has met: geometry, material, emission.
 
 use super::bounce::some_object;
 use super::intersect::{NOTHING, Nearest, Rays, lane_vector};
@@ -26,15 +26,15 @@ pub struct Surfaces<L: Lanes> {
     pub normal: Vec3<L::Real>,
     /// The ray meets the outward side.
     pub front: L::Mask,
-    /// [`MaterialKind`] as a number.
+    /// The [`MaterialKind`] that scatters, as a number.
     pub kind: L::Int,
     /// Where the material's spectra stand in the bank.
     pub spectra: [L::Int; SPECTRA],
-    /// Refraction disperses.
+    /// Refraction there disperses.
     pub disperses: L::Mask,
     /// The side that is met emits.
     pub emits: L::Mask,
-    /// Spectrum of the emission.
+    /// Where the spectrum of the emission stands in the bank.
     pub emission: L::Int,
     /// Weight of the emission against light sampling.
     pub emission_weight: L::Real,
@@ -43,11 +43,10 @@ pub struct Surfaces<L: Lanes> {
 /// Rays that have come to surfaces.
 pub struct Arrival<'a, L: Lanes> {
     pub rays: &'a Rays<L>,
-    /// What they have met.
     pub nearest: Nearest<L>,
-    /// Density with which the direction was sampled.
+    /// Density with which the direction was sampled, sr⁻¹.
     pub pdf: L::Real,
-    /// Light sampling could not have found it.
+    /// The direction was the only one possible, so that light sampling could not have found it.
     pub specular: L::Mask,
 }
 
@@ -189,7 +188,8 @@ pub fn for_each_distinct<L: Lanes>(
     }
 }
 
-/// All lanes at once, from a table that fits in registers; 0 for what nothing needs.
+/// The numbers of parts for all lanes at once, from a table that fits in registers; 0 for what no
+/// branch needs.
 #[inline(always)]
 fn looked_up<L: Lanes>(
     l: L,
@@ -224,7 +224,7 @@ fn looked_up<L: Lanes>(
     }
 }
 
-/// One distinct part at a time.
+/// The numbers of parts, one distinct part at a time.
 #[inline(always)]
 fn one_by_one<L: Lanes>(
     l: L,
@@ -269,7 +269,7 @@ fn one_by_one<L: Lanes>(
     out
 }
 
-/// The surfaces of shapes that no few numbers describe, met at `p`.
+/// Surfaces that the shapes themselves compute, met at `p`.
 #[inline(always)]
 fn others<L: Lanes>(
     l: L,
@@ -300,7 +300,7 @@ fn others<L: Lanes>(
     );
 }
 
-/// Lets textures choose the spectra.
+/// The spectra that textures choose.
 #[inline(always)]
 fn textures<L: Lanes>(l: L, model: &Model<L::Scalar>, textured: L::Mask, out: &mut Surfaces<L>) {
     let (objects, point) = (out.object, out.point);

@@ -83,16 +83,16 @@ fn relative<T: Scalar, const C: usize>(outside: [T; C], inside: [T; C], entering
     eta
 }
 
-/// A path that has to choose.
+/// What a path chooses by: reflection or refraction.
 struct Choice<T, const C: usize> {
     cosine: T,
     eta: [T; C],
     hero: usize,
-    /// Its wavelengths part where they are refracted.
+    /// Refraction parts its wavelengths.
     disperses: bool,
 }
 
-/// What it has chosen.
+/// What a path has chosen.
 struct Chosen<T> {
     refracts: bool,
     probability: T,

@@ -26,7 +26,7 @@ pub enum Medium<L: Lanes> {
 /// The wavelengths that the paths of a packet carry, and spectra there.
 #[derive(Clone, Copy)]
 pub struct Wavelengths<'a, L: Lanes, const C: usize> {
-    /// The bank of spectra.
+    /// The rows of the bank of spectra.
     pub bank: &'a [[L::Scalar; C]],
     /// Which row of every spectrum holds the path's wavelengths.
     pub row: L::Int,
@@ -86,10 +86,10 @@ pub struct Interface<'a, L: Lanes, const C: usize> {
     pub disperses: L::Mask,
     /// The material's spectra: where they stand in the bank.
     pub spectra: [L::Int; SPECTRA],
-    /// The material's numbers.
+    /// The material's numbers, see [`Material::numbers`](super::Material::numbers).
     pub numbers: [L::Real; NUMBERS],
     pub wavelengths: Wavelengths<'a, L, C>,
-    /// A deliberate mistake.
+    /// A deliberate mistake, for builds that make it.
     pub planted: Option<Planted>,
 }
 

@@ -27,9 +27,9 @@ pub trait Material {
     const LAMBERTIAN: bool = false;
     /// Light passes through it; its first two spectra are n and k of what is inside.
     const REFRACTS: bool = false;
-    /// It wants [`Variates::choice`].
+    /// Its events depend on [`Variates::choice`].
     const CHOOSES: bool = false;
-    /// It reads [`Interface::numbers`].
+    /// Its answers depend on [`Interface::numbers`].
     const NUMBERED: bool = false;
 
     /// Its numbers as lanes read them, from the parameters of scene files and the size of the object
@@ -89,7 +89,7 @@ pub trait Material {
         }
     }
 
-    /// Does something for its type.
+    /// Does a job for this type.
     fn run<J: MaterialJob>(job: J) -> J::Output
     where
         Self: Sized,
@@ -184,7 +184,7 @@ impl MaterialKind {
 pub struct MaterialKinds(u32);
 
 impl MaterialKinds {
-    /// Whether a material is in it.
+    /// Whether a material is in the set.
     #[inline(always)]
     pub fn contains(self, kind: MaterialKind) -> bool {
         self.0 >> kind as u32 & 1 == 1

@@ -17,7 +17,7 @@ use crate::sample::warp::cosine_hemisphere_pdf;
 /// and a share of the light that goes exactly there.
 pub struct Phong;
 
-/// Most halvings: n is less than 2⁸.
+/// Most halvings k, so that n is less than 2⁸.
 const HALVINGS: u32 = 8;
 
 struct Numbers<L: Lanes> {

@@ -1,4 +1,4 @@
-//! A material's parameters.
+//! The parameters of a material: as a scene file gives them, and as the loop reads them.
 
 use glam::DVec3;
 
@@ -16,13 +16,11 @@ pub const NUMBERS: usize = 3;
 /// [`Declaration`](crate::declare::Declaration).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
-    /// The material.
     pub kind: MaterialKind,
-    /// The parameters.
     pub values: Vec<Value>,
 }
 
-/// The same as the loop reads it.
+/// A [`Surface`] as the loop reads it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Record<T> {
     /// The material that scatters.
@@ -37,7 +35,7 @@ pub struct Record<T> {
 }
 
 impl Surface {
-    /// What `info` calls it.
+    /// The surface in the words of `info`.
     pub fn words(&self) -> String {
         let name = self.kind.words();
         if self.disperses() {

@@ -6,7 +6,7 @@ use super::kind::Sampler;
 use super::sequence::{CameraSample, Identity, Sequence};
 use crate::math::lanes::{Int, Lanes};
 
-/// Every number drawn on its own.
+/// Numbers that are hashes of seed, pixel, sample, slot and bounce.
 pub struct Independent;
 
 impl Sampler for Independent {
