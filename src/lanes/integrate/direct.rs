@@ -7,7 +7,7 @@ use super::model::Model;
 use super::pool::{WIDEST, array, each};
 use super::replay::LightVertex;
 use super::scatter::{Meeting, Question};
-use super::surface::for_each_distinct;
+use super::surface::Distinct;
 use crate::light::Towards;
 use crate::material::{Material, Transport, each_material};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
@@ -145,13 +145,9 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             extended: l.mask(true),
         };
         let left = self.sample_spheres(l, meeting, (chosen, m), numbers, &mut sampled);
-        for_each_distinct(
-            l,
-            chosen,
-            left,
-            #[inline(always)]
-            |k, here| self.sample_light(l, meeting, (k, here), numbers, &mut sampled),
-        );
+        for (k, here) in Distinct::new(l, chosen, left) {
+            self.sample_light(l, meeting, (k, here), numbers, &mut sampled);
+        }
         sampled
     }
 

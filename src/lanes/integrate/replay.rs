@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// What happened where a path met a surface, or left the scene.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Vertex {
     /// Segments traced before this one.
     pub depth: u32,

@@ -4,7 +4,7 @@ use super::bounce::Step;
 use super::chunk::Workspace;
 use super::direct::Lit;
 use super::pool::{Carried, WIDEST, array, bit_where, each, flags, has};
-use super::surface::{Surfaces, for_each_distinct};
+use super::surface::{Distinct, Surfaces};
 use crate::material::diffuse::reflected;
 use crate::material::{
     Event, Interface, Material, MaterialKind, Medium, NUMBERS, Transport, Variates, Wavelengths,
@@ -248,18 +248,12 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             planted: self.model.planted,
         };
         if M::NUMBERED {
-            for_each_distinct(
-                l,
-                surface.object,
-                lanes,
-                #[inline(always)]
-                |k, here| {
-                    let own = &self.model.appearances[k as usize].surface.numbers;
-                    for (number, own) in at.numbers.iter_mut().zip(own) {
-                        *number = l.select(here, l.splat(*own), *number);
-                    }
-                },
-            );
+            for (k, here) in Distinct::new(l, surface.object, lanes) {
+                let own = &self.model.appearances[k as usize].surface.numbers;
+                for (number, own) in at.numbers.iter_mut().zip(own) {
+                    *number = l.select(here, l.splat(*own), *number);
+                }
+            }
         }
         Question {
             at,

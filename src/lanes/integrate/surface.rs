@@ -61,7 +61,6 @@ impl<L: Lanes> Arrival<'_, L> {
             ..
         } = self;
         Vertex {
-            depth: 0,
             origin: lane_vector(l, ray.origin, 0),
             direction: lane_vector(l, ray.direction, 0),
             distance: l.lane(nearest.t, 0).to_f64(),
@@ -72,10 +71,7 @@ impl<L: Lanes> Arrival<'_, L> {
             arrival_pdf: (!set(self.specular)).then(|| l.lane(self.pdf, 0).to_f64()),
             emission_weight: set(surface.emits)
                 .then(|| l.lane(surface.emission_weight, 0).to_f64()),
-            throughput: Vec::new(),
-            light: None,
-            scattered: None,
-            radiance: Vec::new(),
+            ..Vertex::default()
         }
     }
 }
@@ -156,35 +152,49 @@ fn weights<L: Lanes>(
 ) {
     let ray = &arrival.rays.ray;
     let weighted = out.emits & !arrival.specular & !light.same(l.int(NO_LIGHT));
-    for_each_distinct(
-        l,
-        light,
-        weighted,
-        #[inline(always)]
-        |k, here| {
-            let light = &model.lights[k as usize];
-            let chosen = l.splat(light.probability)
-                * light.shape.pdf(l, ray.origin, ray.direction, out.normal);
-            let weight = power_weight(l, arrival.pdf, chosen);
-            out.emission_weight = l.select(here, weight, out.emission_weight);
-        },
-    );
+    for (k, here) in Distinct::new(l, light, weighted) {
+        let light = &model.lights[k as usize];
+        let chosen =
+            l.splat(light.probability) * light.shape.pdf(l, ray.origin, ray.direction, out.normal);
+        let weight = power_weight(l, arrival.pdf, chosen);
+        out.emission_weight = l.select(here, weight, out.emission_weight);
+    }
 }
 
-/// Calls `f` with each value that occurs in the lanes of `m`, and where it does.
-#[inline(always)]
-pub fn for_each_distinct<L: Lanes>(
+/// Each value that occurs in some lanes, and where it does.
+pub struct Distinct<L: Lanes> {
     l: L,
     values: L::Int,
     m: L::Mask,
-    mut f: impl FnMut(u32, L::Mask),
-) {
-    let mut pending = m.bits();
-    while pending != 0 {
-        let value = l.int_lane(values, pending.trailing_zeros() as usize);
-        let here = m & values.same(l.int(value));
-        pending &= !here.bits();
-        f(value, here);
+    pending: u32,
+}
+
+impl<L: Lanes> Distinct<L> {
+    /// The values in the lanes of `m`.
+    #[inline(always)]
+    pub fn new(l: L, values: L::Int, m: L::Mask) -> Self {
+        Self {
+            l,
+            values,
+            m,
+            pending: m.bits(),
+        }
+    }
+}
+
+impl<L: Lanes> Iterator for Distinct<L> {
+    type Item = (u32, L::Mask);
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<(u32, L::Mask)> {
+        if self.pending == 0 {
+            return None;
+        }
+        let first = self.pending.trailing_zeros() as usize;
+        let value = self.l.int_lane(self.values, first);
+        let here = self.m & self.values.same(self.l.int(value));
+        self.pending &= !here.bits();
+        Some((value, here))
     }
 }
 
@@ -243,29 +253,23 @@ fn one_by_one<L: Lanes>(
         emission: none,
         light: l.int(NO_LIGHT),
     };
-    for_each_distinct(
-        l,
-        part,
-        hit,
-        #[inline(always)]
-        |k, here| {
-            let own = &entries[k as usize];
-            let real = inlined!(|x: L::Scalar, other| l.select(here, l.splat(x), other));
-            let int = inlined!(|x: u32, other| l.select_int(here, l.int(x), other));
-            for (out, own) in out.vector.iter_mut().zip(own.vector) {
-                *out = real(own, *out);
-            }
-            for (out, own) in out.spectra.iter_mut().zip(own.spectra) {
-                *out = int(own, *out);
-            }
-            out.level = real(own.level, out.level);
-            out.half = real(own.half, out.half);
-            out.object = int(own.object, out.object);
-            out.word = int(own.word, out.word);
-            out.emission = int(own.emission, out.emission);
-            out.light = int(own.light, out.light);
-        },
-    );
+    for (k, here) in Distinct::new(l, part, hit) {
+        let own = &entries[k as usize];
+        let real = inlined!(|x: L::Scalar, other| l.select(here, l.splat(x), other));
+        let int = inlined!(|x: u32, other| l.select_int(here, l.int(x), other));
+        for (out, own) in out.vector.iter_mut().zip(own.vector) {
+            *out = real(own, *out);
+        }
+        for (out, own) in out.spectra.iter_mut().zip(own.spectra) {
+            *out = int(own, *out);
+        }
+        out.level = real(own.level, out.level);
+        out.half = real(own.half, out.half);
+        out.object = int(own.object, out.object);
+        out.word = int(own.word, out.word);
+        out.emission = int(own.emission, out.emission);
+        out.light = int(own.light, out.light);
+    }
     out
 }
 
@@ -280,49 +284,37 @@ fn others<L: Lanes>(
 ) {
     let objects = out.object;
     let ray = &arrival.rays.ray;
-    for_each_distinct(
-        l,
-        objects,
-        m,
-        #[inline(always)]
-        |k, here| {
-            let shape = &model.shapes[k as usize];
-            let surface = match shape.kind {
-                Some(kind) => shape.surface(l, kind, p),
-                None => {
-                    let reach = ray.extent + arrival.nearest.t;
-                    implicit_surface(l, model, k, [p, ray.direction], reach, here)
-                }
-            };
-            out.point = Vec3::select(l, here, surface.point, out.point);
-            out.normal = Vec3::select(l, here, surface.normal, out.normal);
-        },
-    );
+    for (k, here) in Distinct::new(l, objects, m) {
+        let shape = &model.shapes[k as usize];
+        let surface = match shape.kind {
+            Some(kind) => shape.surface(l, kind, p),
+            None => {
+                let reach = ray.extent + arrival.nearest.t;
+                implicit_surface(l, model, k, [p, ray.direction], reach, here)
+            }
+        };
+        out.point = Vec3::select(l, here, surface.point, out.point);
+        out.normal = Vec3::select(l, here, surface.normal, out.normal);
+    }
 }
 
 /// The spectra that textures choose.
 #[inline(always)]
 fn textures<L: Lanes>(l: L, model: &Model<L::Scalar>, textured: L::Mask, out: &mut Surfaces<L>) {
     let (objects, point) = (out.object, out.point);
-    for_each_distinct(
-        l,
-        objects,
-        textured,
-        #[inline(always)]
-        |k, here| {
-            let record = &model.appearances[k as usize].surface;
-            let Some(texture) = record.texture else {
-                return;
-            };
-            let [a, b, c] = record.numbers;
-            let numbers = [l.splat(a), l.splat(b), l.splat(c)];
-            let local = model.shapes[k as usize].local(l, point);
-            let chosen = texture.texture(l, numbers, local, out.spectra);
-            for (spectrum, chosen) in out.spectra.iter_mut().zip(chosen) {
-                *spectrum = l.select_int(here, chosen, *spectrum);
-            }
-        },
-    );
+    for (k, here) in Distinct::new(l, objects, textured) {
+        let record = &model.appearances[k as usize].surface;
+        let Some(texture) = record.texture else {
+            continue;
+        };
+        let [a, b, c] = record.numbers;
+        let numbers = [l.splat(a), l.splat(b), l.splat(c)];
+        let local = model.shapes[k as usize].local(l, point);
+        let chosen = texture.texture(l, numbers, local, out.spectra);
+        for (spectrum, chosen) in out.spectra.iter_mut().zip(chosen) {
+            *spectrum = l.select_int(here, chosen, *spectrum);
+        }
+    }
 }
 
 /// The point on an implicit surface and its outward normal; finite everywhere. What rounding has
