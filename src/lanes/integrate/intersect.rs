@@ -412,7 +412,7 @@ impl<L: Lanes> Blocks<L> {
 
     /// Those of the lanes in `asked` that do not end at their object.
     #[inline(always)]
-    pub fn counted(&self, asked: L::Mask, objects: L::Int) -> L::Mask {
+    fn counted(&self, asked: L::Mask, objects: L::Int) -> L::Mask {
         asked & !self.except.same(objects)
     }
 

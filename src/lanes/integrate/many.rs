@@ -7,7 +7,7 @@
 use super::intersect::{Asked, Blocks, Candidate, Query, Rays, Search, Searches};
 use super::model::Many;
 use super::pool::{WIDEST, array, each, int_array};
-use crate::math::lanes::{Lanes, Mask, Real, Scalar};
+use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 use crate::shape::ShapeKind;
 use crate::shape::hierarchy::{BoxRay, Child, Descent, WIDTH};
@@ -75,17 +75,21 @@ impl<L: Lanes> Query<'_, L> {
 }
 
 impl<N: Lanes> Query<'_, N> {
-    /// Where one ray, the same in all lanes, crosses the balls of a group from place `from` on, which
-    /// are these objects and asked in these lanes; `None` where it surely misses all.
+    /// Where one ray, the same in all lanes, crosses the balls of a group from place `from` on, but not
+    /// the object that is left out; `None` where it surely misses all.
     #[inline(always)]
     fn cross_balls(
         &self,
         (balls, from): (&Balls<N::Scalar>, usize),
-        objects: N::Int,
-        asked: N::Mask,
+        left_out: Option<N::Int>,
         limit: N::Real,
     ) -> Option<Candidate<N>> {
         let (n, rays) = (self.l, self.rays);
+        let objects = n.load_int(&balls.objects[from..]);
+        let mut asked = balls.present(n, from);
+        if let Some(left_out) = left_out {
+            asked = asked & !left_out.same(objects);
+        }
         let asked = Asked::new(n, objects, ShapeKind::Sphere, rays, asked);
         let span = balls.span(n, from, &rays.ray, asked.all, limit);
         if !asked.met(&span).any() {
@@ -223,9 +227,7 @@ fn search_along<N: Lanes>(
             Child::Balls(balls) => {
                 for from in (0..balls.count).step_by(N::COUNT) {
                     let limit = n.splat(closest.end());
-                    let objects = n.load_int(&balls.objects[from..]);
-                    let asked = balls.present(n, from);
-                    if let Some(c) = query.cross_balls((balls, from), objects, asked, limit) {
+                    if let Some(c) = query.cross_balls((balls, from), None, limit) {
                         closest.take_each(n, &c, c.possible.bits(), |i| {
                             first(balls.objects[(from + i) % WIDTH])
                         });
@@ -302,10 +304,8 @@ fn block_along<N: Lanes>(
         match child {
             Child::Balls(balls) => {
                 for from in (0..balls.count).step_by(N::COUNT) {
-                    let objects = n.load_int(&balls.objects[from..]);
-                    let asked = blocks.counted(balls.present(n, from), objects);
-                    let group = (balls, from);
-                    if let Some(c) = query.cross_balls(group, objects, asked, blocks.limit) {
+                    let except = Some(blocks.except);
+                    if let Some(c) = query.cross_balls((balls, from), except, blocks.limit) {
                         blocks.take(&c);
                     }
                 }
@@ -341,9 +341,7 @@ pub(super) fn candidates<L: Lanes>(
         match child {
             Child::Balls(balls) => {
                 for from in (0..balls.count).step_by(L::Narrow::COUNT) {
-                    let numbers = n.load_int(&balls.objects[from..]);
-                    let asked = balls.present(n, from);
-                    if let Some(c) = query.cross_balls((balls, from), numbers, asked, end) {
+                    if let Some(c) = query.cross_balls((balls, from), None, end) {
                         objects.extend(each(before(&c)).map(|i| balls.objects[from + i]));
                     }
                 }
