@@ -2,7 +2,7 @@
 
 use super::Slot;
 use super::kind::Sampler;
-use super::sequence::{CameraSample, Identity, Sequence};
+use super::sequence::{Identity, Sequence};
 use super::sobol::Sobol;
 use crate::math::lanes::Lanes;
 
@@ -20,11 +20,14 @@ impl Sampler for Center {
     }
 
     #[inline(always)]
-    fn camera<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
-        CameraSample {
-            pixel: [l.real(0.5); 2],
-            ..Sobol::camera(sequence, l, id, lens)
-        }
+    fn camera<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>) -> ([L::Real; 2], L::Real) {
+        let (_, wavelength) = Sobol::camera(sequence, l, id);
+        ([l.real(0.5); 2], wavelength)
+    }
+
+    #[inline(always)]
+    fn lens<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>) -> [L::Real; 2] {
+        Sobol::lens(sequence, l, id)
     }
 
     #[inline(always)]

@@ -3,7 +3,7 @@
 use super::Slot;
 use super::hash::pcg4d;
 use super::kind::Sampler;
-use super::sequence::{CameraSample, Identity, Sequence};
+use super::sequence::{Identity, Sequence};
 use crate::math::lanes::{Int, Lanes};
 
 /// Numbers that are hashes of seed, pixel, sample, slot and bounce.
@@ -14,17 +14,9 @@ impl Sampler for Independent {
     const WORDS: &'static str = "independent numbers";
 
     #[inline(always)]
-    fn camera<L: Lanes>(_: &Sequence, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
+    fn camera<L: Lanes>(_: &Sequence, l: L, id: Identity<L>) -> ([L::Real; 2], L::Real) {
         let [pixel, [wavelength, _]] = four(l, id, Slot::Pixel);
-        CameraSample {
-            pixel,
-            wavelength,
-            lens: if lens {
-                four(l, id, Slot::Lens)[0]
-            } else {
-                [l.real(0.0); 2]
-            },
-        }
+        (pixel, wavelength)
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! What a sampler is and draws, and the list of them.
 
 use super::Slot;
-use super::sequence::{CameraSample, Identity, Sequence};
+use super::sequence::{Identity, Sequence};
 use crate::math::lanes::Lanes;
 
 /// A way to choose the points of a pixel: numbers in [0, 1) by sample and slot.
@@ -22,18 +22,17 @@ pub trait Sampler {
         index
     }
 
-    /// The numbers of a camera ray; those of the lens only where there is one.
+    /// The numbers of a camera ray without a lens: position in the pixel and wavelength.
     #[inline(always)]
-    fn camera<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
-        CameraSample {
-            pixel: Self::pair(sequence, l, id, Slot::Pixel),
-            wavelength: Self::single(sequence, l, id, Slot::Wavelength),
-            lens: if lens {
-                Self::pair(sequence, l, id, Slot::Lens)
-            } else {
-                [l.real(0.0); 2]
-            },
-        }
+    fn camera<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>) -> ([L::Real; 2], L::Real) {
+        let pixel = Self::pair(sequence, l, id, Slot::Pixel);
+        (pixel, Self::single(sequence, l, id, Slot::Wavelength))
+    }
+
+    /// The position on the lens.
+    #[inline(always)]
+    fn lens<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>) -> [L::Real; 2] {
+        Self::pair(sequence, l, id, Slot::Lens)
     }
 
     /// One number of a slot.

@@ -86,10 +86,21 @@ impl Sequence {
         }
     }
 
-    /// [`Sampler::camera`].
+    /// [`Sampler::camera`], and [`Sampler::lens`] where there is one.
     #[inline(never)]
     pub fn camera<L: Lanes>(&self, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
-        l.vectorize(inlined!(|| of!(self.kind, camera(self, l, id, lens))))
+        l.vectorize(inlined!(|| {
+            let (pixel, wavelength) = of!(self.kind, camera(self, l, id));
+            let mut sample = CameraSample {
+                pixel,
+                wavelength,
+                lens: [l.real(0.0); 2],
+            };
+            if lens {
+                sample.lens = of!(self.kind, lens(self, l, id));
+            }
+            sample
+        }))
     }
 
     /// [`Sampler::single`].
