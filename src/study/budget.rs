@@ -7,7 +7,7 @@ use super::grid::{Grid, Point};
 use super::measure::measure;
 use super::own::FIRST;
 use super::reference::Reference;
-use super::seeds::seed;
+use crate::render::seeds::seed;
 use super::subject::Ready;
 use crate::chart::Key;
 use crate::film::pixels::{Estimate, Pixels};

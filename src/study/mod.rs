@@ -5,7 +5,6 @@
 //! seeds, compares each render with a [`mod@reference`], and keeps one [`Row`](crate::chart::Row)
 //! of each in a [`journal`]; [`budget`] sees to it that this fits into the time there is.
 
-pub mod agreement;
 pub mod axis;
 pub mod budget;
 pub mod choice;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use super::grid::Point;
-use super::seeds::seed;
+use crate::render::seeds::seed;
 use crate::chart::Key;
 use crate::plan::choose::Precision;
 use crate::plan::{Plan, PlanError};
