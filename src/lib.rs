@@ -177,7 +177,7 @@
 //! render → plan, scene, integrate, film, camera, shape, sample, spectrum, stats, math
 //! compare → scene, film, spectrum, stats
 //! chart → stats
-//! study → chart, compare, render, plan, scene, film, spectrum, stats, math
+//! study → chart, render, plan, scene, film, spectrum, stats
 //! ```
 //!
 //! # Features

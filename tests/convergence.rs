@@ -10,9 +10,9 @@
 
 use std::path::Path;
 
+use crate::agreement::case::Case;
 use etalon::inside::scene::{SamplerKind, load};
 use etalon::inside::stats::family::sidak;
-use etalon::inside::study::agreement::Case;
 use etalon::{BinGrid, Estimate, Overrides, Side};
 use rayon::prelude::*;
 

@@ -2,7 +2,7 @@
 //!
 //! Each question about a picture (image mean of each channel and band, mean of each material's
 //! pixels) is passed only where the difference is *shown* to be within its tolerance, which is
-//! computed beforehand from a pilot and printed; see [`etalon::inside::study::agreement`]. The whole family
+//! computed beforehand from a pilot and printed; see [`crate::agreement`]. The whole family
 //! raises a false alarm with probability below [`LEVEL`]. `ETALON_REFERENCE_SEED` draws other
 //! samples.
 
@@ -13,13 +13,13 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::agreement::case::Case;
+use crate::agreement::outcome::{Levels, Outcome, decide};
+use crate::agreement::planned::{Paths, Planned, SHARP, plan};
 use etalon::Side;
 use etalon::inside::compare::stale::{Freshness, freshness};
 use etalon::inside::film::names;
-use etalon::inside::stats::verdict::POWER;
-use etalon::inside::study::agreement::{
-    Case, Levels, Outcome, Paths, Planned, SHARP, decide, plan,
-};
+use etalon::inside::stats::estimate::POWER;
 use statrs::distribution::{Binomial, DiscreteCDF};
 
 /// Probability of a false alarm of all references together.

@@ -6,13 +6,16 @@
 )]
 
 use etalon::Estimate;
-use etalon::inside::stats::family::{holm, sidak};
+use etalon::inside::stats::estimate::POWER;
+use etalon::inside::stats::family::sidak;
 use etalon::inside::stats::student;
 use etalon::inside::stats::uniformity::anderson_darling;
-use etalon::inside::stats::verdict::{POWER, Verdict, judge, smallest_caught};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use statrs::distribution::{ContinuousCDF, Normal};
+
+use crate::agreement::verdict::{Verdict, judge};
+use crate::statistics_support::holm;
 
 fn generator(seed: u64) -> Pcg64Mcg {
     Pcg64Mcg::seed_from_u64(seed)
@@ -170,7 +173,7 @@ fn the_power_is_as_stated() {
         standard_error: 1.0,
         freedom: f64::INFINITY,
     };
-    let bias = smallest_caught(&honest, level);
+    let bias = honest.smallest_caught(level);
     let caught = (0..runs)
         .filter(|_| {
             let estimate = Estimate {

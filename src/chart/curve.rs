@@ -1,14 +1,12 @@
 //! Rows of tables gathered into curves: what a chart shows.
 
 use super::{Key, Row};
-use crate::stats::metrics::mean;
+use crate::stats::Estimate;
 use crate::stats::slope::{Replicates, Slope};
-use crate::stats::student;
 
 /// Renders with the same settings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// The abscissa of the study.
     pub x: f64,
     /// Its independent renders.
     pub rows: Vec<Row>,
@@ -25,40 +23,21 @@ pub struct Curve {
     pub points: Vec<Point>,
 }
 
-/// A mean over replicates and the half-width of its 95 % interval (NaN with one).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Mean {
-    pub value: f64,
-    /// Half the width.
-    pub half: f64,
-}
-
 impl Point {
-    /// The mean of a column.
-    pub fn mean(&self, column: impl Fn(&Row) -> f64) -> Mean {
-        let values: Vec<f64> = self
-            .rows
-            .iter()
-            .map(column)
-            .filter(|v| !v.is_nan())
-            .collect();
-        let count = values.len() as f64;
-        let value = mean(&values);
-        let squares: f64 = values.iter().map(|v| (v - value) * (v - value)).sum();
-        let error = (squares / (count - 1.0) / count).sqrt();
-        Mean {
-            value,
-            half: student::critical(0.05, count - 1.0) * error,
-        }
+    /// The mean of a column over the renders that have it.
+    pub fn mean(&self, column: impl Fn(&Row) -> f64) -> Estimate {
+        let values = self.rows.iter().map(column).filter(|v| !v.is_nan());
+        Estimate::mean(&values.collect::<Vec<_>>())
     }
 
-    /// Root mean squared error, of the mean over replicates, and the half-width of its interval.
-    pub fn rmse(&self) -> Mean {
+    /// Root mean squared error, of the mean over replicates; its standard error to first order.
+    pub fn rmse(&self) -> Estimate {
         let square = self.mean(Row::mse);
         let value = square.value.max(0.0).sqrt();
-        Mean {
+        Estimate {
             value,
-            half: square.half / (2.0 * value),
+            standard_error: square.standard_error / (2.0 * value),
+            ..square
         }
     }
 
@@ -82,113 +61,95 @@ impl Point {
 
 impl Curve {
     /// Points above the reference's floor.
-    pub fn above_floor(&self) -> impl Iterator<Item = &Point> {
+    fn above_floor(&self) -> impl Iterator<Item = &Point> {
         self.points.iter().filter(|point| !point.at_floor())
     }
 
     /// How the root mean squared error falls, over the points above the floor.
     pub fn slope(&self) -> Option<Slope> {
-        let points: Vec<Replicates> = self
-            .above_floor()
-            .map(|point| Replicates {
-                x: point.x,
-                values: point.rows.iter().map(Row::mse).collect(),
-            })
-            .collect();
+        let replicates = |point: &Point| Replicates {
+            x: point.x,
+            values: point.rows.iter().map(Row::mse).collect(),
+        };
+        let points: Vec<Replicates> = self.above_floor().map(replicates).collect();
         Some(Slope::fit(&points)?.of_root(2.0))
     }
 }
 
+/// Groups items that have the same key; groups come in the order of their first items.
+pub fn grouped<T, K: PartialEq>(
+    items: impl IntoIterator<Item = T>,
+    key: impl Fn(&T) -> K,
+) -> Vec<(K, Vec<T>)> {
+    let mut groups: Vec<(K, Vec<T>)> = Vec::new();
+    for item in items {
+        let key = key(&item);
+        match groups.iter_mut().find(|(other, _)| *other == key) {
+            Some((_, group)) => group.push(item),
+            None => groups.push((key, vec![item])),
+        }
+    }
+    groups
+}
+
 /// Gathers rows; curves come in the order of their first rows.
 pub fn curves(rows: &[Row], abscissa: Key) -> Vec<Curve> {
-    let mut groups: Vec<(Identity, Vec<Row>)> = Vec::new();
-    for row in rows {
-        let identity = Identity::of(row, abscissa);
-        match groups.iter_mut().find(|(other, _)| *other == identity) {
-            Some((_, rows)) => rows.push(row.clone()),
-            None => groups.push((identity, vec![row.clone()])),
-        }
-    }
+    let groups = grouped(rows, |row| identity(row, abscissa));
     let identities: Vec<Identity> = groups.iter().map(|(i, _)| i.clone()).collect();
-    groups
-        .into_iter()
-        .map(|(identity, rows)| Curve {
-            label: identity.label(&identities),
-            renderer: identity.renderer.clone(),
-            points: points(rows, abscissa),
-        })
-        .collect()
-}
-
-fn points(rows: Vec<Row>, abscissa: Key) -> Vec<Point> {
-    let mut points: Vec<Point> = Vec::new();
-    for row in rows {
+    let curve = |(identity, rows): (Identity, Vec<&Row>)| {
         // No limit of the path length lies beyond all limits.
-        let x = row.value(abscissa).parse().unwrap_or(f64::INFINITY);
-        match points.iter_mut().find(|point| point.x == x) {
-            Some(point) => point.rows.push(row),
-            None => points.push(Point { x, rows: vec![row] }),
+        let x = |row: &Row| row.value(abscissa).parse().unwrap_or(f64::INFINITY);
+        let points = grouped(rows.into_iter().cloned(), x).into_iter();
+        let mut points: Vec<Point> = points.map(|(x, rows)| Point { x, rows }).collect();
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        Curve {
+            label: label(&identity, &identities),
+            renderer: identity[0].clone(),
+            points,
         }
-    }
-    points.sort_by(|a, b| a.x.total_cmp(&b.x));
-    points
+    };
+    groups.into_iter().map(curve).collect()
 }
 
-/// What names a curve.
-#[derive(Debug, Clone, PartialEq)]
-struct Identity {
-    renderer: String,
-    scene: String,
-    panel: String,
-    settings: String,
-    values: [String; Key::ALL.len()],
+/// Texts that name a curve beside the values of axes.
+const TEXTS: usize = 4;
+
+/// What names a curve: program, scene, panel and settings, and the values of all axes but the
+/// abscissa.
+type Identity = [String; TEXTS + Key::ALL.len()];
+
+fn identity(row: &Row, abscissa: Key) -> Identity {
+    let mut identity = Identity::default();
+    let texts = [&row.renderer, &row.scene, &row.panel, &row.settings];
+    for (own, text) in identity
+        .iter_mut()
+        .zip(texts.into_iter().chain(&row.values))
+    {
+        text.clone_into(own);
+    }
+    identity[TEXTS + abscissa as usize].clear();
+    identity
 }
 
-impl Identity {
-    fn of(row: &Row, abscissa: Key) -> Self {
-        let mut values = row.values.clone();
-        values[abscissa as usize].clear();
-        Self {
-            renderer: row.renderer.clone(),
-            scene: row.scene.clone(),
-            panel: row.panel.clone(),
-            settings: row.settings.clone(),
-            values,
-        }
-    }
-
-    /// What distinguishes this curve among all.
-    fn label(&self, all: &[Self]) -> String {
-        let mut words: Vec<String> = Vec::new();
-        let texts: [fn(&Self) -> &String; 4] =
-            [|i| &i.renderer, |i| &i.scene, |i| &i.panel, |i| &i.settings];
-        for text in texts {
-            if all.iter().any(|other| text(other) != text(self)) && !text(self).is_empty() {
-                words.push(text(self).clone());
-            }
-        }
-        for key in Key::ALL {
-            let own = &self.values[key as usize];
-            // What programs call by other names says nothing across them.
-            let mut siblings = all.iter().filter(|other| other.renderer == self.renderer);
-            let varies = siblings.any(|other| other.values[key as usize] != *own);
-            if (varies || key == Key::Sampler) && !own.is_empty() {
-                words.push(said(key, own));
-            }
-        }
-        words.join(", ")
-    }
-}
-
-/// A value in words.
-fn said(key: Key, value: &str) -> String {
-    match key {
-        Key::Sampler | Key::Precision => value.to_owned(),
-        Key::Wavelengths => format!("{value} wavelengths"),
-        Key::Scrambles => format!("{value} scrambles"),
-        Key::Spp => format!("{value} spp"),
-        Key::MaxDepth | Key::Finder => format!("{} {value}", key.column()),
-    }
+/// What distinguishes a curve among all.
+fn label(own: &Identity, all: &[Identity]) -> String {
+    let varies = |i: usize| move |other: &&Identity| other[i] != own[i];
+    let texts = (0..TEXTS)
+        .filter(|i| all.iter().any(|other| varies(*i)(&other)))
+        .map(|i| own[i].clone());
+    let values = Key::ALL.into_iter().filter_map(|key| {
+        let i = TEXTS + key as usize;
+        // What programs call by other names says nothing across them.
+        let mut siblings = all.iter().filter(|other| other[0] == own[0]);
+        let shown = key == Key::Sampler || siblings.any(|other| varies(i)(&other));
+        (shown && !own[i].is_empty()).then(|| match key {
+            Key::Sampler | Key::Precision => own[i].clone(),
+            Key::Wavelengths | Key::Scrambles | Key::Spp => format!("{} {}", own[i], key.column()),
+            Key::MaxDepth | Key::Finder => format!("{} {}", key.column(), own[i]),
+        })
+    });
+    let words = texts.filter(|text| !text.is_empty()).chain(values);
+    words.collect::<Vec<_>>().join(", ")
 }
 
 /// The least root mean squared error of all points that have one.
@@ -200,26 +161,22 @@ pub fn best(curves: &[Curve]) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// The points that no other beats in both time and error: (curve, point), by rising seconds.
-pub fn front(curves: &[Curve]) -> Vec<(usize, usize)> {
-    let mut all: Vec<(f64, f64, usize, usize)> = Vec::new();
-    for (c, curve) in curves.iter().enumerate() {
-        for (p, point) in curve.points.iter().enumerate() {
-            let error = point.mean(|row| row.relmse).value;
-            let seconds = point.mean(|row| row.seconds).value;
-            if !point.at_floor() && error > 0.0 && seconds > 0.0 {
-                all.push((seconds, error, c, p));
-            }
-        }
-    }
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+/// Seconds and relative mean squared errors of the points that no other beats in both, by rising
+/// seconds.
+pub fn front<'a>(curves: impl IntoIterator<Item = &'a Curve>) -> Vec<(f64, f64)> {
+    let points = curves.into_iter().flat_map(Curve::above_floor);
+    let mean = |point: &Point| {
+        let seconds = point.mean(|row| row.seconds).value;
+        (seconds, point.mean(|row| row.relmse).value)
+    };
+    let above_zero = |(seconds, error): &(f64, f64)| *seconds > 0.0 && *error > 0.0;
+    let mut front: Vec<_> = points.map(mean).filter(above_zero).collect();
+    front.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut least = f64::INFINITY;
-    let mut front = Vec::new();
-    for (_, error, c, p) in all {
-        if error < least {
-            least = error;
-            front.push((c, p));
-        }
-    }
+    front.retain(|(_, error)| {
+        let better = *error < least;
+        least = least.min(*error);
+        better
+    });
     front
 }

@@ -7,10 +7,8 @@
 mod curve;
 mod figure;
 pub mod figures;
-mod key;
 pub mod row;
 
-pub use curve::{Curve, Mean, Point, best, curves, front};
-pub use figure::{Figure, FigureError, Guide, MARKERS, Mark, Series};
-pub use key::Key;
-pub use row::Row;
+pub use curve::{Curve, Point, best, curves};
+pub use figure::{Figure, FigureError};
+pub use row::{Key, Row};

@@ -1,40 +1,56 @@
 //! One finished render of a study as a row of a table.
 //!
-//! A table is CSV with the heading [`COLUMNS`]; every row is one whole render, nothing is averaged
-//! away. Other programs may write the same columns (in any order, further ones are ignored), and
-//! `etalon chart` lays them beside etalon's own; scenes/README.md says what each column means.
+//! A table is CSV; every row is one whole render, nothing is averaged away. Other programs may write
+//! the same columns (in any order, further ones are ignored), and `etalon chart` lays them beside
+//! etalon's own; scenes/README.md says what each column means.
 
 use std::fmt;
 
-use super::Key;
+/// A setting of the renderer that a study can vary and a chart tells apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(usize)]
+pub enum Key {
+    Spp,
+    Sampler,
+    Precision,
+    Wavelengths,
+    MaxDepth,
+    Finder,
+    Scrambles,
+}
 
-/// The columns in the order in which they are written.
-pub const COLUMNS: [&str; 24] = [
-    "renderer",
-    "scene",
-    "panel",
-    "settings",
-    "sampler",
-    "precision",
-    "wavelengths",
-    "max_depth",
-    "finder",
-    "scrambles",
-    "spp",
-    "replicate",
-    "seed",
-    "threads",
-    "seconds",
-    "samples",
-    "rmse",
-    "relmse",
-    "bias",
-    "bias_standard_error",
-    "estimated_rmse",
-    "reference",
-    "reference_rmse",
-    "reference_relmse",
-];
+impl Key {
+    pub const ALL: [Self; 7] = {
+        use Key::{Finder, MaxDepth, Precision, Sampler, Scrambles, Spp, Wavelengths};
+        [
+            Spp,
+            Sampler,
+            Precision,
+            Wavelengths,
+            MaxDepth,
+            Finder,
+            Scrambles,
+        ]
+    };
+
+    /// Its name on the command line and its column in a table.
+    pub fn column(self) -> &'static str {
+        match self {
+            Self::Spp => "spp",
+            Self::Sampler => "sampler",
+            Self::Precision => "precision",
+            Self::Wavelengths => "wavelengths",
+            Self::MaxDepth => "max_depth",
+            Self::Finder => "finder",
+            Self::Scrambles => "scrambles",
+        }
+    }
+
+    /// Whether its values are whole numbers.
+    pub fn is_number(self) -> bool {
+        !matches!(self, Self::Sampler | Self::Precision | Self::Finder)
+    }
+}
 
 /// Columns that a table must have: the others may be missing or empty.
 const REQUIRED: [&str; 5] = ["renderer", "scene", "spp", "seconds", "relmse"];
@@ -46,18 +62,16 @@ pub struct Row {
     pub renderer: String,
     /// Name of the scene: its file's without directory and extension.
     pub scene: String,
-    /// Panel of the scene.
     pub panel: String,
-    /// Whatever else was laid over the scene, `key=value` separated by spaces.
+    /// All other settings that differ from the scene's, `key=value` separated by spaces.
     pub settings: String,
     /// Values of the study's axes, by [`Key`]; empty where there is nothing to say.
     pub values: [String; Key::ALL.len()],
     /// Which of the independent renders of a point.
-    pub replicate: u32,
-    /// Seed of the render.
+    pub replicate: u64,
     pub seed: u64,
     /// Threads that worked.
-    pub threads: u32,
+    pub threads: u64,
     /// Wall-clock seconds of the render.
     pub seconds: f64,
     /// Camera paths in the whole picture.
@@ -81,26 +95,49 @@ pub struct Row {
 }
 
 /// What is wrong with a table.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum TableError {
-    /// It has no rows.
     #[error("it has no rows")]
     Empty,
-    /// A column is missing.
     #[error("it has no column \"{0}\": it is no table of `etalon study` (see scenes/README.md)")]
     Column(&'static str),
-    /// A cell is no number.
     #[error("line {line}: \"{text}\" in the column {column} is no number")]
     Number {
-        /// Its line, counted from 1.
+        /// Counted from 1.
         line: u64,
         column: &'static str,
-        /// What stands there.
         text: String,
     },
-    /// It is not CSV.
     #[error("it is no CSV: {0}")]
-    Csv(String),
+    Csv(#[from] csv::Error),
+}
+
+/// A cell of a row.
+enum Cell<'a> {
+    Text(&'a mut String),
+    Count(&'a mut u64),
+    Real(&'a mut f64),
+}
+
+impl Cell<'_> {
+    /// Takes its value from a table; `None` where that is no number.
+    fn read(self, text: &str) -> Option<()> {
+        match self {
+            Self::Text(value) => text.clone_into(value),
+            Self::Count(value) => *value = text.parse().ok()?,
+            Self::Real(value) => *value = text.parse().ok()?,
+        }
+        Some(())
+    }
+
+    fn text(self) -> String {
+        match self {
+            Self::Text(value) => value.clone(),
+            Self::Count(value) => value.to_string(),
+            Self::Real(value) if value.is_nan() => String::new(),
+            Self::Real(value) => format!("{value:e}"),
+        }
+    }
 }
 
 impl Row {
@@ -119,56 +156,58 @@ impl Row {
         self.rmse * self.rmse.abs()
     }
 
-    /// The row as a line of CSV, its end included.
-    pub fn line(&self) -> String {
-        line(&self.cells())
+    /// The columns in the order in which they are written.
+    fn columns(&mut self) -> [(&'static str, Cell<'_>); 24] {
+        use Cell::{Count, Real, Text};
+        let [
+            spp,
+            sampler,
+            precision,
+            wavelengths,
+            max_depth,
+            finder,
+            scrambles,
+        ] = self.values.each_mut();
+        [
+            ("renderer", Text(&mut self.renderer)),
+            ("scene", Text(&mut self.scene)),
+            ("panel", Text(&mut self.panel)),
+            ("settings", Text(&mut self.settings)),
+            ("sampler", Text(sampler)),
+            ("precision", Text(precision)),
+            ("wavelengths", Text(wavelengths)),
+            ("max_depth", Text(max_depth)),
+            ("finder", Text(finder)),
+            ("scrambles", Text(scrambles)),
+            ("spp", Text(spp)),
+            ("replicate", Count(&mut self.replicate)),
+            ("seed", Count(&mut self.seed)),
+            ("threads", Count(&mut self.threads)),
+            ("seconds", Real(&mut self.seconds)),
+            ("samples", Count(&mut self.samples)),
+            ("rmse", Real(&mut self.rmse)),
+            ("relmse", Real(&mut self.relmse)),
+            ("bias", Real(&mut self.bias)),
+            ("bias_standard_error", Real(&mut self.bias_standard_error)),
+            ("estimated_rmse", Real(&mut self.estimated_rmse)),
+            ("reference", Text(&mut self.reference)),
+            ("reference_rmse", Real(&mut self.reference_rmse)),
+            ("reference_relmse", Real(&mut self.reference_relmse)),
+        ]
     }
 
-    /// One cell for each of [`COLUMNS`].
-    fn cells(&self) -> Vec<String> {
-        let value = |key| self.value(key).to_owned();
-        let number = |x: f64| {
-            if x.is_nan() {
-                String::new()
-            } else {
-                format!("{x:e}")
-            }
-        };
-        vec![
-            self.renderer.clone(),
-            self.scene.clone(),
-            self.panel.clone(),
-            self.settings.clone(),
-            value(Key::Sampler),
-            value(Key::Precision),
-            value(Key::Wavelengths),
-            value(Key::MaxDepth),
-            value(Key::Finder),
-            value(Key::Scrambles),
-            value(Key::Spp),
-            self.replicate.to_string(),
-            self.seed.to_string(),
-            self.threads.to_string(),
-            number(self.seconds),
-            self.samples.to_string(),
-            number(self.rmse),
-            number(self.relmse),
-            number(self.bias),
-            number(self.bias_standard_error),
-            number(self.estimated_rmse),
-            self.reference.clone(),
-            number(self.reference_rmse),
-            number(self.reference_relmse),
-        ]
+    /// The row as a line of CSV, its end included.
+    pub fn line(&self) -> String {
+        line(self.clone().columns().map(|(_, cell)| cell.text()))
     }
 }
 
 /// The heading as a line of CSV.
 pub fn heading() -> String {
-    line(&COLUMNS)
+    line(Row::default().columns().map(|(name, _)| name.to_owned()))
 }
 
-fn line<T: AsRef<[u8]>>(cells: &[T]) -> String {
+fn line(cells: [String; 24]) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     // A vector takes everything.
     let _ = writer.write_record(cells);
@@ -182,93 +221,53 @@ fn line<T: AsRef<[u8]>>(cells: &[T]) -> String {
 /// [`TableError`] with the line where a number was expected, and for tables without the columns
 /// that a chart needs.
 pub fn read(text: &str) -> Result<Vec<Row>, TableError> {
-    let broken = |error: csv::Error| TableError::Csv(error.to_string());
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
-    let heading = reader.headers().map_err(broken)?.clone();
+    let heading = reader.headers()?.clone();
     if let Some(missing) = REQUIRED.iter().find(|c| heading.iter().all(|h| h != **c)) {
         return Err(TableError::Column(missing));
     }
     let mut rows = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(broken)?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let cells = Cells {
-            heading: &heading,
-            record: &record,
-            line,
+        let record = record?;
+        let mut row = Row {
+            rmse: f64::NAN,
+            bias: f64::NAN,
+            bias_standard_error: f64::NAN,
+            estimated_rmse: f64::NAN,
+            ..Row::default()
         };
-        rows.push(cells.row()?);
+        for (column, cell) in row.columns() {
+            let index = heading.iter().position(|name| name == column);
+            let text = index.and_then(|index| record.get(index));
+            let text = text.unwrap_or_default();
+            if text.is_empty() && !REQUIRED.contains(&column) {
+                continue;
+            }
+            let is_number = column != "spp" || text.parse::<f64>().is_ok();
+            if !is_number || cell.read(text).is_none() {
+                return Err(TableError::Number {
+                    line: record.position().map_or(0, csv::Position::line),
+                    column,
+                    text: text.to_owned(),
+                });
+            }
+        }
+        rows.push(row);
     }
     Ok(rows)
 }
 
-/// A row as it stands in the file.
-struct Cells<'a> {
-    heading: &'a csv::StringRecord,
-    record: &'a csv::StringRecord,
-    line: u64,
-}
-
-impl Cells<'_> {
-    fn text(&self, column: &str) -> String {
-        let index = self.heading.iter().position(|name| name == column);
-        let cell = index.and_then(|index| self.record.get(index));
-        cell.unwrap_or_default().to_owned()
-    }
-
-    /// The number in a column; `missing` where the cell is empty and may be.
-    fn number<T: std::str::FromStr>(
-        &self,
-        column: &'static str,
-        missing: T,
-    ) -> Result<T, TableError> {
-        let text = self.text(column);
-        if text.is_empty() && !REQUIRED.contains(&column) {
-            return Ok(missing);
-        }
-        text.parse().map_err(|_| TableError::Number {
-            line: self.line,
-            column,
-            text,
-        })
-    }
-
-    fn row(&self) -> Result<Row, TableError> {
-        let nan = f64::NAN;
-        let _whole: f64 = self.number("spp", nan)?;
-        Ok(Row {
-            renderer: self.text("renderer"),
-            scene: self.text("scene"),
-            panel: self.text("panel"),
-            settings: self.text("settings"),
-            values: Key::ALL.map(|key| self.text(key.column())),
-            replicate: self.number("replicate", 0)?,
-            seed: self.number("seed", 0)?,
-            threads: self.number("threads", 0)?,
-            seconds: self.number("seconds", nan)?,
-            samples: self.number("samples", 0)?,
-            rmse: self.number("rmse", nan)?,
-            relmse: self.number("relmse", nan)?,
-            bias: self.number("bias", nan)?,
-            bias_standard_error: self.number("bias_standard_error", nan)?,
-            estimated_rmse: self.number("estimated_rmse", nan)?,
-            reference: self.text("reference"),
-            reference_rmse: self.number("reference_rmse", 0.0)?,
-            reference_relmse: self.number("reference_relmse", 0.0)?,
-        })
-    }
-}
-
-/// What is being measured, for people.
+/// The values of the axes and the number of the render.
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let said = Key::ALL.iter().filter(|key| !self.value(**key).is_empty());
-        let said: Vec<_> = said
-            .map(|key| format!("{} {}", key.column(), self.value(*key)))
-            .collect();
-        write!(f, "{}, replicate {}", said.join(", "), self.replicate)
+        for key in Key::ALL {
+            if !self.value(key).is_empty() {
+                write!(f, "{} {}, ", key.column(), self.value(key))?;
+            }
+        }
+        write!(f, "replicate {}", self.replicate)
     }
 }

@@ -44,6 +44,9 @@ pub fn run(arguments: &args::Study) -> Result<Answer, CommandError> {
 fn said(error: &StudyError) -> CommandError {
     CommandError::Study(match error {
         StudyError::OneReplicate => format!("--replicates: {error}"),
+        StudyError::Other { .. } => {
+            format!("{error}; choose another directory with -o, or remove that one")
+        }
         StudyError::Subject(SubjectError::Scene(scene)) => scene_words(scene),
         StudyError::Grid(GridError::Twice(_)) => {
             format!("{error}: put all its values into one --over")

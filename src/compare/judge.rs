@@ -10,7 +10,6 @@ use super::measure::shared;
 use super::{Block, Channel, LEAST_FREEDOM, Side, blocks, mean_over};
 use crate::stats::family::sidak;
 use crate::stats::uniformity::anderson_darling;
-use crate::stats::verdict::smallest_caught;
 use crate::stats::{Estimate, student};
 
 /// Probability of calling honest pictures inconsistent.
@@ -162,7 +161,7 @@ fn mean_judged(name: &str, difference: &Estimate, reference: f64, level: f64) ->
         standard_error: difference.standard_error / unit,
         freedom: difference.freedom,
         p_value,
-        smallest_caught: smallest_caught(difference, level) / unit,
+        smallest_caught: difference.smallest_caught(level) / unit,
         blocks: None,
         rejected,
     }

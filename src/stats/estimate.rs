@@ -4,6 +4,10 @@ use std::fmt;
 
 use super::student;
 
+/// Probability with which a test catches what is called the smallest bias that it catches
+/// ([`Estimate::smallest_caught`]).
+pub const POWER: f64 = 0.975;
+
 /// An estimate of a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
@@ -129,6 +133,20 @@ impl Estimate {
             return 1.0;
         }
         student::two_sided(distance / self.standard_error, self.freedom)
+    }
+
+    /// Half the width of the two-sided interval by Student's t that misses with probability `level`.
+    #[must_use]
+    pub fn half_width(&self, level: f64) -> f64 {
+        student::critical(level, self.freedom) * self.standard_error
+    }
+
+    /// The smallest bias that a two-sided test at `level` catches with probability [`POWER`]:
+    /// (t + t₀.₉₇₅) standard errors.
+    #[must_use]
+    pub fn smallest_caught(&self, level: f64) -> f64 {
+        let t = |level| student::critical(level, self.freedom);
+        (t(level) + t(2.0 * (1.0 - POWER))) * self.standard_error
     }
 }
 

@@ -9,6 +9,8 @@
 //! value μ of the channel: ε = 1e-4·μ² beside r² in [`relmse`], and its root 1e-2·μ beside |x| + |r|
 //! in [`smape`]; below a hundredth of the mean, an error counts as one at a hundredth.
 
+use super::Estimate;
+
 /// Share of the squared mean reference value that stands beside r² in the denominator of
 /// [`relmse`]; the choice is a convention that numbers can only be compared under.
 pub const RELMSE_EPSILON: f64 = 1e-4;
@@ -32,28 +34,22 @@ pub struct Metric {
 }
 
 impl Metric {
-    /// The mean of terms.
-    fn of_terms(terms: impl Iterator<Item = f64> + Clone) -> Self {
-        let count = terms.clone().count() as f64;
-        let value = terms.clone().sum::<f64>() / count;
-        let squares: f64 = terms.map(|term| (term - value) * (term - value)).sum();
-        Self {
-            value,
-            standard_error: (squares / (count - 1.0) / count).sqrt(),
-        }
-    }
-
     /// The mean of values, one a pixel.
     #[must_use]
     pub fn mean(values: &[f64]) -> Self {
-        Self::of_terms(values.iter().copied())
+        let Estimate {
+            value,
+            standard_error,
+            ..
+        } = Estimate::mean(values);
+        Self {
+            value,
+            standard_error,
+        }
     }
 
-    fn scaled(self, factor: f64) -> Self {
-        Self {
-            value: self.value * factor,
-            standard_error: self.standard_error * factor.abs(),
-        }
+    fn of_terms(terms: impl Iterator<Item = f64>) -> Self {
+        Self::mean(&terms.collect::<Vec<_>>())
     }
 }
 
@@ -66,7 +62,12 @@ pub fn mean_error(x: &[f64], r: &[f64]) -> Metric {
 /// Signed mean error over the mean reference value.
 #[must_use]
 pub fn relative_mean_error(x: &[f64], r: &[f64]) -> Metric {
-    mean_error(x, r).scaled(1.0 / mean(r))
+    let error = mean_error(x, r);
+    let factor = 1.0 / mean(r);
+    Metric {
+        value: error.value * factor,
+        standard_error: error.standard_error * factor.abs(),
+    }
 }
 
 /// Mean squared error, Σ (x − r)² / n.
@@ -133,7 +134,7 @@ pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-fn errors<'a>(x: &'a [f64], r: &'a [f64]) -> impl Iterator<Item = f64> + Clone + 'a {
+fn errors<'a>(x: &'a [f64], r: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
     assert_eq!(x.len(), r.len(), "values and references");
     x.iter().zip(r).map(|(x, r)| x - r)
 }

@@ -1,10 +1,10 @@
 //! Statistics over slices of numbers: no knowledge of pictures' files or of scenes.
 //!
 //! [`metrics`] says how far numbers are from a reference; an [`Estimate`] is a number with its
-//! standard error and the degrees of freedom of that; [`verdict`] decides whether an estimate is
-//! shown to be right, shown to be wrong, or neither; [`family`] shares a level among many tests;
-//! [`uniformity`] asks whether many p-values together look like those of honest numbers; [`blocks`]
-//! cuts a picture into places that are judged one by one.
+//! standard error and the degrees of freedom of that; [`slope`] is the power law that errors follow;
+//! [`family`] shares a level among many tests; [`uniformity`] asks whether many p-values together
+//! look like those of correct error bars; [`blocks`] cuts a picture into places that are judged one
+//! by one.
 
 pub mod blocks;
 pub mod estimate;
@@ -13,6 +13,5 @@ pub mod metrics;
 pub mod slope;
 pub mod student;
 pub mod uniformity;
-pub mod verdict;
 
 pub use estimate::Estimate;

@@ -1,47 +1,35 @@
-//! What a study goes over: the choices of the estimator and their values.
+//! What a study varies: settings of the estimator and their values.
 
 use crate::chart::Key;
 
-/// A choice and the values it takes, in order.
+/// A setting and the values it takes, in order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Axis {
     pub key: Key,
-    /// Its values, at least one, none twice.
+    /// At least one, none twice.
     pub values: Vec<String>,
 }
 
 /// What is wrong with an axis.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum AxisError {
-    /// No `=`.
     #[error(
         "\"{0}\" is no axis: expected KEY=VALUES, such as spp=1..4096x2 or sampler=sobol,independent"
     )]
     Form(String),
-    /// A key that a study cannot go over.
-    #[error("a study cannot go over \"{0}\": it can go over {known}", known = known())]
+    #[error("a study cannot go over \"{0}\": it can go over {known}", known = Key::ALL.map(Key::column).join(", "))]
     Key(String),
-    /// The values of a range are not whole numbers, or it has no end.
     #[error(
         "\"{0}\" is no range: expected FROM..TOxFACTOR with whole numbers 1 ≤ FROM ≤ TO and a factor above 1, such as 1..64x2"
     )]
     Range(String),
     #[error("the axis {0} has no values")]
     Empty(&'static str),
-    /// A number was expected.
     #[error("\"{text}\" is no whole number, as the axis {key} has")]
-    Number {
-        key: &'static str,
-        /// What was given.
-        text: String,
-    },
+    Number { key: &'static str, text: String },
 }
 
-fn known() -> String {
-    Key::ALL.map(Key::column).join(", ")
-}
-
-/// Most values of an axis: more would be no study but a mistake.
+/// Most values of a range: more would be no study but a mistake.
 const MOST_VALUES: usize = 1000;
 
 impl std::str::FromStr for Axis {
@@ -66,8 +54,7 @@ impl std::str::FromStr for Axis {
             return Err(AxisError::Empty(key.column()));
         }
         if key.is_number() {
-            // Whole numbers in their order; a limit that is none comes last.
-            values.sort_by_key(|value| value.parse().unwrap_or(u64::MAX));
+            values.sort_by_key(|value| value.parse::<u64>().ok());
         }
         Ok(Self { key, values })
     }
@@ -78,17 +65,15 @@ fn items(key: Key, item: &str) -> Result<Vec<String>, AxisError> {
     if !key.is_number() {
         return Ok(vec![item.to_owned()]);
     }
-    if item.contains("..") {
-        let values = range(item).ok_or_else(|| AxisError::Range(item.to_owned()))?;
-        return Ok(values.iter().map(u64::to_string).collect());
-    }
-    match item.parse::<u64>() {
-        Ok(number) => Ok(vec![number.to_string()]),
-        Err(_) => Err(AxisError::Number {
+    let numbers = if item.contains("..") {
+        range(item).ok_or_else(|| AxisError::Range(item.to_owned()))?
+    } else {
+        vec![item.parse().map_err(|_| AxisError::Number {
             key: key.column(),
             text: item.to_owned(),
-        }),
-    }
+        })?]
+    };
+    Ok(numbers.iter().map(u64::to_string).collect())
 }
 
 /// `FROM..TOxFACTOR`: FROM, FROM·FACTOR … rounded to whole numbers, up to TO.
@@ -98,12 +83,10 @@ fn range(item: &str) -> Option<Vec<u64>> {
     let from: u64 = from.trim().parse().ok().filter(|from| *from >= 1)?;
     let to: u64 = to.trim().parse().ok().filter(|to| *to >= from)?;
     let factor: f64 = factor.trim().parse().ok().filter(|f| *f > 1.0)?;
-    let mut values = Vec::new();
-    let mut value = from as f64;
-    while value.round() as u64 <= to && values.len() <= MOST_VALUES {
-        values.push(value.round() as u64);
-        value *= factor;
-    }
+    let all = std::iter::successors(Some(from as f64), |value| Some(value * factor));
+    let whole = all.map(|value| value.round() as u64);
+    let kept = whole.take_while(|value| *value <= to);
+    let mut values: Vec<u64> = kept.take(MOST_VALUES + 1).collect();
     values.dedup();
     (values.len() <= MOST_VALUES).then_some(values)
 }

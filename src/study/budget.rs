@@ -3,31 +3,29 @@
 use std::time::{Duration, Instant};
 
 use super::axis::Axis;
-use super::grid::{Grid, Point};
-use super::measure::measure;
 use super::own::FIRST;
 use super::reference::Reference;
-use super::seeds::seed;
 use super::subject::Ready;
 use crate::chart::Key;
 use crate::film::pixels::{Estimate, Pixels};
 use crate::render::Unwatched;
+use crate::render::seeds::seed;
 
 /// What a render costs.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy)]
 pub struct Cost {
     /// Seconds for one sample in each pixel.
-    pub sample: f64,
+    sample: f64,
     /// Seconds to begin a render, to form its estimates and to compare them.
-    pub render: f64,
+    render: f64,
 }
 
-/// What a whole study costs.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Estimated {
-    /// Cost of each point, in the grid's order.
+/// What renders cost that differ in more than their samples.
+#[derive(Debug, Clone)]
+pub struct Costs {
+    /// Of each curve over samples, or else of each point.
     pub points: Vec<Cost>,
-    /// Cost of the study's own reference, if it needs one.
+    /// Of the study's own reference, if it needs one.
     pub reference: Option<Cost>,
     /// Independent renders of each point.
     pub replicates: u32,
@@ -60,21 +58,16 @@ impl std::fmt::Display for Fits {
 /// Why a study is not begun.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BudgetError {
-    /// It would take too long.
     #[error(
         "the study would take about {needed:.0} s, its reference included, and may take {budget:.0} s: {fits}"
     )]
     Seconds {
-        /// Estimated seconds.
         needed: f64,
-        /// Allowed seconds.
         budget: f64,
         /// A budget that would do, seconds.
         enough: f64,
-        /// What would fit.
         fits: Fits,
     },
-    /// It would not fit into memory.
     #[error(
         "the study needs about {} MiB of memory, and {} MiB are available: a picture of {}x{} pixels would fit",
         needed >> 20, available >> 20, size[0], size[1]
@@ -96,123 +89,104 @@ const LONGEST_AXIS: u32 = 14;
 /// The smallest: fewer than four points are no curve.
 const SHORTEST_AXIS: u32 = 3;
 
-/// Measures what renders of this scene cost, in about this many seconds.
-pub fn pilot(ready: &mut Ready, seconds: f64) -> Cost {
-    let base = seed(ready.scene.image.seed, "pilot", 0);
-    // Strata are cut for a known number of samples; the other samplers go on as long as wanted.
-    let samples = if ready.scene.image.sampler.needs_count() {
-        ready.scene.image.spp
-    } else {
-        ready.scene.image.spp.max(1 << 16)
-    };
-    let time = Duration::from_secs_f64(seconds);
-    let start = Instant::now();
-    let rendered = ready.render_for(base, samples, Some(time), &mut Unwatched);
-    let estimates = rendered.rgb();
-    let [width, height] = ready.scene.image.size.map(|n| n as usize);
-    let nothing = Reference::uniform([width, height], [1.0; 3]);
-    std::hint::black_box(measure(&estimates, &nothing));
-    Cost {
-        sample: rendered.seconds / f64::from(rendered.samples),
-        render: start.elapsed().as_secs_f64() - rendered.seconds,
+impl Cost {
+    /// Measures what renders of this scene cost, in about this many seconds.
+    pub fn pilot(ready: &mut Ready, seconds: f64) -> Self {
+        let base = seed(ready.scene.image.seed, "pilot", 0);
+        // Strata are cut for a known number of samples; the other samplers go on as long as wanted.
+        let samples = if ready.scene.image.sampler.needs_count() {
+            ready.scene.image.spp
+        } else {
+            ready.scene.image.spp.max(1 << 16)
+        };
+        let time = Duration::from_secs_f64(seconds);
+        let start = Instant::now();
+        let rendered = ready.render_for(base, samples, Some(time), &mut Unwatched);
+        let estimates = rendered.rgb();
+        let nothing = Reference::uniform(ready.size(), [1.0; 3]);
+        std::hint::black_box(nothing.measure(&estimates));
+        Self {
+            sample: rendered.seconds / f64::from(rendered.samples),
+            render: start.elapsed().as_secs_f64() - rendered.seconds,
+        }
+    }
+
+    /// Seconds of a render.
+    pub fn seconds(self, samples: u32) -> f64 {
+        self.render + self.sample * f64::from(samples)
     }
 }
 
-impl Estimated {
-    /// Seconds of the points and the reference where each point has its number of samples.
-    pub fn seconds(&self, samples: &[u32]) -> f64 {
-        let points: f64 = self
-            .points
-            .iter()
-            .zip(samples)
-            .map(|(cost, spp)| cost.render + cost.sample * f64::from(*spp))
-            .sum();
-        let most = samples.iter().copied().max().unwrap_or(0);
+impl Costs {
+    /// Seconds of all renders of points with these samples a pixel, and of the reference.
+    fn seconds(&self, points: impl Iterator<Item = (Cost, u32)> + Clone) -> f64 {
+        let most = points.clone().map(|(_, samples)| samples).max();
         let reference = self.reference.map_or(0.0, |cost| {
-            f64::from(FIRST) * (cost.render + cost.sample * f64::from(most))
+            f64::from(FIRST) * cost.seconds(most.unwrap_or(0))
         });
+        let points: f64 = points.map(|(cost, samples)| cost.seconds(samples)).sum();
         f64::from(self.replicates) * points + reference
     }
-}
 
-/// The axis of samples 1, 2, 4 … that fits into the budget, for curves of these costs.
-///
-/// # Errors
-/// [`BudgetError::Seconds`] where not even the shortest axis fits.
-pub fn plan(curves: &Estimated, budget: f64) -> Result<Axis, BudgetError> {
-    let seconds = |longest: u32| {
-        let samples: Vec<u32> = (0..=longest).map(|k| 1 << k).collect();
-        let whole = Estimated {
-            points: samples.iter().flat_map(|_| curves.points.clone()).collect(),
-            ..curves.clone()
+    /// The axis of samples 1, 2, 4 … that fits into the budget.
+    ///
+    /// # Errors
+    /// [`BudgetError::Seconds`] where not even the shortest axis fits.
+    pub fn plan(&self, budget: f64) -> Result<Axis, BudgetError> {
+        let seconds = |longest: u32| {
+            let with = |samples| self.points.iter().map(move |cost| (*cost, samples));
+            self.seconds((0..=longest).flat_map(|k| with(1 << k)))
         };
-        let each = samples.iter().flat_map(|s| vec![*s; curves.points.len()]);
-        whole.seconds(&each.collect::<Vec<_>>())
-    };
-    let fits = |longest: &u32| seconds(*longest) <= PLANNED * budget;
-    let longest = (SHORTEST_AXIS..=LONGEST_AXIS).rev().find(fits);
-    let longest = longest.ok_or_else(|| {
-        let needed = seconds(SHORTEST_AXIS);
-        BudgetError::Seconds {
+        let fits = |longest: &u32| seconds(*longest) <= PLANNED * budget;
+        let longest = (SHORTEST_AXIS..=LONGEST_AXIS).rev().find(fits);
+        let longest = longest.ok_or_else(|| {
+            let needed = seconds(SHORTEST_AXIS);
+            BudgetError::Seconds {
+                needed,
+                budget,
+                enough: (needed / PLANNED).ceil(),
+                fits: Fits::NoAxisTo(1 << SHORTEST_AXIS),
+            }
+        })?;
+        Ok(Axis {
+            key: Key::Spp,
+            values: (0..=longest).map(|k| (1u32 << k).to_string()).collect(),
+        })
+    }
+
+    /// Checks that points with these samples a pixel fit.
+    ///
+    /// # Errors
+    /// [`BudgetError::Seconds`] with the largest number of samples that would.
+    pub fn check(
+        &self,
+        abscissa: Key,
+        points: &[(Cost, u32)],
+        budget: f64,
+    ) -> Result<(), BudgetError> {
+        let all = || points.iter().copied();
+        let needed = self.seconds(all());
+        if needed <= budget {
+            return Ok(());
+        }
+        let fits = if abscissa == Key::Spp {
+            let fits =
+                |end: &u32| self.seconds(all().filter(|(_, samples)| samples <= end)) <= budget;
+            let ends = all().map(|(_, samples)| samples);
+            ends.filter(fits).max().map(Fits::AxisTo)
+        } else {
+            let most = all().map(|(_, samples)| samples).max().unwrap_or(1);
+            let fits = |n: &u32| self.seconds(all().map(|(cost, _)| (cost, *n))) <= budget;
+            let mut smaller = (0..most.ilog2()).rev().map(|k| 1 << k);
+            smaller.find(fits).map(Fits::Samples)
+        };
+        Err(BudgetError::Seconds {
             needed,
             budget,
-            enough: (needed / PLANNED).ceil(),
-            fits: Fits::NoAxisTo(1 << SHORTEST_AXIS),
-        }
-    })?;
-    Ok(Axis {
-        key: Key::Spp,
-        values: (0..=longest).map(|k| (1u32 << k).to_string()).collect(),
-    })
-}
-
-/// Checks that a grid with these samples at its points fits.
-///
-/// # Errors
-/// [`BudgetError::Seconds`] with the largest number of samples that would.
-pub fn check(
-    grid: &Grid,
-    points: &[Point],
-    samples: &[u32],
-    cost: &Estimated,
-    budget: f64,
-) -> Result<f64, BudgetError> {
-    let needed = cost.seconds(samples);
-    if needed <= budget {
-        return Ok(needed);
+            enough: needed.ceil(),
+            fits: fits.unwrap_or(Fits::NoSamples),
+        })
     }
-    let fits = if grid.abscissa.key == Key::Spp {
-        shorter(points, samples, cost, budget).map(Fits::AxisTo)
-    } else {
-        let most = samples.iter().copied().max().unwrap_or(1);
-        let fits = |n: &u32| cost.seconds(&vec![*n; points.len()]) <= budget;
-        let smaller = (0..most.ilog2()).rev().map(|k| 1 << k).find(fits);
-        smaller.map(Fits::Samples)
-    };
-    let fits = fits.unwrap_or(Fits::NoSamples);
-    Err(BudgetError::Seconds {
-        needed,
-        budget,
-        enough: needed.ceil(),
-        fits,
-    })
-}
-
-/// The largest end of an axis of samples that fits.
-fn shorter(points: &[Point], samples: &[u32], cost: &Estimated, budget: f64) -> Option<u32> {
-    let mut ends: Vec<u32> = samples.to_vec();
-    ends.sort_unstable();
-    ends.dedup();
-    let seconds = |end: u32| {
-        let kept = |i: &usize| samples[*i] <= end;
-        let kept: Vec<usize> = (0..points.len()).filter(kept).collect();
-        let part = Estimated {
-            points: kept.iter().map(|i| cost.points[*i]).collect(),
-            ..cost.clone()
-        };
-        part.seconds(&kept.iter().map(|i| samples[*i]).collect::<Vec<_>>())
-    };
-    ends.into_iter().rev().find(|end| seconds(*end) <= budget)
 }
 
 /// Checks that pictures of this size can be rendered and compared with this much memory.

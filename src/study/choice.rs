@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use super::StudyError;
-use super::reference::{self, Reference, ReferenceError};
+use super::reference::{Reference, ReferenceError};
 use super::run::Request;
 use super::subject::{Ready, Subject};
-use crate::chart::Key;
 use crate::scene::{SamplerKind, Scene};
 use crate::spectrum::Spectrum;
 
@@ -74,63 +73,55 @@ pub fn stem(path: &Path) -> String {
 /// committed reference that does not fit is passed over, and the notes say why.
 pub fn find(request: &Request, scene: &Scene) -> Result<Found, StudyError> {
     let size = scene.image.size.map(|n| n as usize);
-    let subject = reference::Subject {
-        scene,
-        set: &request.subject.overrides.set,
-    };
-    let given = |reference, about: String| Found {
-        reference: Some(reference),
-        about,
-        notes: Vec::new(),
-    };
-    match &request.reference {
+    let mut notes = Vec::new();
+    let (reference, about) = match &request.reference {
         Choice::File(path) => {
-            let reference = Reference::read(path, subject)?;
-            Ok(given(reference, format!("the file {}", path.display())))
+            let reference = Reference::read(path, scene, &request.subject.overrides.set)?;
+            (Some(reference), format!("the file {}", path.display()))
         }
         Choice::Radiance(value) => {
             let truth = Reference::truth(size, &Spectrum::Constant(*value));
             let about = format!("the radiance {value} at all wavelengths, known in closed form");
-            Ok(given(truth, about))
+            (Some(truth), about)
         }
         Choice::Colour(rgb) => {
             let about = format!("the linear R, G, B {rgb:?}, known in closed form");
-            Ok(given(Reference::uniform(size, *rgb), about))
+            (Some(Reference::uniform(size, *rgb)), about)
         }
-        Choice::Auto => Ok(automatic(request, subject)),
-    }
+        Choice::Auto => {
+            if let Some((path, reference)) = first_committed(request, scene, &mut notes) {
+                let about = format!("the committed reference {}", path.display());
+                (Some(reference), about)
+            } else if let Some(radiance) = &scene.truth {
+                let about = "the truth that the scene file names".to_owned();
+                (Some(Reference::truth(size, radiance)), about)
+            } else {
+                (None, String::new())
+            }
+        }
+    };
+    Ok(Found {
+        reference,
+        about,
+        notes,
+    })
 }
 
-fn automatic(request: &Request, subject: reference::Subject<'_>) -> Found {
-    let scene = subject.scene;
-    let mut notes = Vec::new();
+/// The first committed reference that fits.
+fn first_committed(
+    request: &Request,
+    scene: &Scene,
+    notes: &mut Vec<String>,
+) -> Option<(PathBuf, Reference)> {
     for path in committed(&request.subject.path) {
-        match Reference::read(&path, subject) {
-            Ok(reference) => {
-                return Found {
-                    reference: Some(reference),
-                    about: format!("the committed reference {}", path.display()),
-                    notes,
-                };
-            }
+        match Reference::read(&path, scene, &request.subject.overrides.set) {
+            Ok(reference) => return Some((path, reference)),
             // Of another panel: not meant for this study.
             Err(ReferenceError::Variant { .. }) => {}
             Err(reason) => notes.push(format!("not used as reference: {reason}")),
         }
     }
-    if let Some(radiance) = &scene.truth {
-        let size = scene.image.size.map(|n| n as usize);
-        return Found {
-            reference: Some(Reference::truth(size, radiance)),
-            about: "the truth that the scene file names".to_owned(),
-            notes,
-        };
-    }
-    Found {
-        reference: None,
-        about: String::new(),
-        notes,
-    }
+    None
 }
 
 /// Where committed references of a scene may lie: pictures whose name begins with the scene's in
@@ -157,29 +148,34 @@ fn committed(scene: &Path) -> Vec<PathBuf> {
 }
 
 /// The scene as the study's own reference renders it: with the best unbiased sampler, finders that
-/// prove their hits, a precision that the plan answers for, and the longest of the paths that the
-/// points have.
+/// prove their hits, a precision that the plan answers for, and the most samples and the longest
+/// paths that the points have.
 ///
 /// # Errors
 /// [`StudyError::Subject`] where the scene is not valid so.
-pub fn own(subject: &Subject, points: &[Ready], samples: u32) -> Result<Ready, StudyError> {
-    let mut overrides = subject.overrides.clone();
-    let image = |key: &str, value: String| (format!("image.{key}"), value);
-    let sampler = match points.first().map(|ready| ready.scene.image.sampler) {
+pub fn own<'a>(
+    subject: &Subject,
+    points: impl Iterator<Item = &'a Ready> + Clone,
+) -> Result<Ready, StudyError> {
+    let mut images = points.map(|ready| &ready.scene.image);
+    let samples = images.clone().map(|image| image.spp).max().unwrap_or(1);
+    let depths = images.clone().map(|image| image.max_depth);
+    let sampler = match images.next().map(|image| image.sampler) {
         Some(SamplerKind::Center) => "center",
         _ => "sobol",
     };
-    let depths = points.iter().map(|ready| ready.scene.image.max_depth);
+    let image = |key: &str, value: String| (format!("image.{key}"), value);
+    let mut overrides = subject.overrides.clone();
     overrides.finder = Some("auto".to_owned());
     overrides.set.extend([
         image("sampler", sampler.to_owned()),
         image("precision", "auto".to_owned()),
         image("replicates", "1".to_owned()),
-        image(Key::Spp.image_key(), samples.to_string()),
+        image("spp", samples.to_string()),
     ]);
     // No limit on any path is no limit on the longest.
-    let unlimited = depths.clone().any(|depth| depth.is_none());
-    if let (false, Some(depth)) = (unlimited, depths.flatten().max()) {
+    let depths: Option<Vec<u32>> = depths.collect();
+    if let Some(depth) = depths.and_then(|depths| depths.into_iter().max()) {
         overrides.set.push(image("max_depth", depth.to_string()));
     }
     let name = format!("{sampler}, precision and finder auto");

@@ -12,23 +12,17 @@ pub struct Grid {
     pub others: Vec<Axis>,
 }
 
-/// A point of the grid.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Point {
-    pub curve: usize,
-    /// What is chosen there.
-    pub choices: Vec<(Key, String)>,
-}
+/// The values of the axes at a point.
+pub type Choices = Vec<(Key, String)>;
 
 /// What is wrong with a grid.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum GridError {
-    /// One axis given twice.
     #[error("the axis {0} is given twice")]
     Twice(&'static str),
 }
 
-/// Keys that can be the abscissa, the most wanted first.
+/// Keys that can be the abscissa, the first of them preferred.
 const ABSCISSAE: [Key; 4] = [Key::Spp, Key::MaxDepth, Key::Scrambles, Key::Wavelengths];
 
 impl Grid {
@@ -52,37 +46,15 @@ impl Grid {
         }))
     }
 
-    /// The combinations of the values of the other axes.
-    pub fn curves(&self) -> Vec<Vec<(Key, String)>> {
-        self.others.iter().fold(vec![Vec::new()], |curves, axis| {
-            let with = |curve: &Vec<(Key, String)>, value: &String| {
-                let mut curve = curve.clone();
-                curve.push((axis.key, value.clone()));
-                curve
-            };
-            let each = |curve| axis.values.iter().map(move |value| with(curve, value));
-            curves.iter().flat_map(each).collect()
-        })
-    }
-
     /// All points, curve by curve, each in the order of its abscissa.
-    pub fn points(&self) -> Vec<Point> {
-        let mut points = Vec::new();
-        for (curve, choices) in self.curves().into_iter().enumerate() {
-            for value in &self.abscissa.values {
-                let mut choices = choices.clone();
-                choices.push((self.abscissa.key, value.clone()));
-                points.push(Point { curve, choices });
-            }
-        }
-        points
-    }
-}
-
-impl Point {
-    /// What is chosen for this key, if it is an axis.
-    pub fn choice(&self, key: Key) -> Option<&str> {
-        let found = self.choices.iter().find(|(other, _)| *other == key);
-        found.map(|(_, value)| value.as_str())
+    pub fn points(&self) -> Vec<Choices> {
+        let axes = self.others.iter().chain([&self.abscissa]);
+        axes.fold(vec![Vec::new()], |points, axis| {
+            let with = |point: Choices| {
+                let values = axis.values.iter();
+                values.map(move |value| [&point[..], &[(axis.key, value.clone())]].concat())
+            };
+            points.into_iter().flat_map(with).collect()
+        })
     }
 }

@@ -1,15 +1,74 @@
-//! The table of a study on the disk: one line a render, each whole or not there.
+//! What a study keeps on the disk to be taken up again: `study.toml`, what it was asked to do, so
+//! that nothing else is mixed into it, and `study.csv`, one line a render, each whole or not there.
 
-use std::collections::HashSet;
 use std::fs::{File, OpenOptions};
 use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 
-use crate::chart::Key;
-use crate::chart::row::{self, Row, TableError};
+use toml_edit::{Array, DocumentMut, Item, Table, value};
 
-/// What names a render within its study.
-pub type Name = ([String; Key::ALL.len()], u32);
+use super::StudyError;
+use super::axis::Axis;
+use super::grid::Grid;
+use crate::chart::row::{self, Row};
+
+/// The request of a study, the grid it led to and the command that asked for it, as TOML.
+pub fn record(request: &[(&str, String)], grid: &Grid, command: &str) -> String {
+    let mut document = DocumentMut::new();
+    document["command"] = value(command);
+    let table = |(key, text): &(&str, String)| ((*key).to_owned(), value(text.as_str()));
+    document["request"] = Item::Table(request.iter().map(table).collect());
+    let mut table = Table::new();
+    table["abscissa"] = value(grid.abscissa.to_string());
+    let others: Array = grid.others.iter().map(Axis::to_string).collect();
+    table["curves"] = value(others);
+    document["grid"] = Item::Table(table);
+    document.to_string()
+}
+
+/// The grid of the study that a file records, if it is the one requested; `None` where there is no
+/// file.
+///
+/// # Errors
+/// [`StudyError::Other`] where it is of another study.
+pub fn resume(path: &Path, request: &[(&str, String)]) -> Result<Option<Grid>, StudyError> {
+    let broken = |reason: &dyn ToString| StudyError::file("use", path, reason);
+    let text = match std::fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(broken(&error)),
+    };
+    let document: DocumentMut = text.parse().map_err(|error| broken(&error))?;
+    for (key, wanted) in request {
+        let found = document["request"].get(key).and_then(Item::as_str);
+        let found = found.unwrap_or_default();
+        if found != wanted {
+            return Err(StudyError::Other {
+                path: path.to_owned(),
+                key: (*key).to_owned(),
+                found: quoted(found),
+                wanted: quoted(wanted),
+            });
+        }
+    }
+    let axis = |text: &str| text.parse::<Axis>().map_err(|error| broken(&error));
+    let grid = &document["grid"];
+    let abscissa = grid["abscissa"].as_str().unwrap_or_default();
+    let others = grid["curves"].as_array();
+    let others = others.into_iter().flatten().filter_map(|v| v.as_str());
+    Ok(Some(Grid {
+        abscissa: axis(abscissa)?,
+        others: others.map(axis).collect::<Result<_, _>>()?,
+    }))
+}
+
+fn quoted(text: &str) -> String {
+    if text.is_empty() {
+        "not given".to_owned()
+    } else {
+        format!("\"{text}\"")
+    }
+}
 
 /// The table, open for the next row.
 #[derive(Debug)]
@@ -18,26 +77,6 @@ pub struct Journal {
     file: File,
     /// The rows so far.
     pub rows: Vec<Row>,
-    done: HashSet<Name>,
-}
-
-/// Why the table cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum JournalError {
-    /// The operating system refuses.
-    #[error("cannot write {}: {source}", path.display())]
-    File {
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// What is there is no table of a study.
-    #[error("{}: {reason}", path.display())]
-    Content {
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: TableError,
-    },
 }
 
 impl Journal {
@@ -45,71 +84,46 @@ impl Journal {
     /// away.
     ///
     /// # Errors
-    /// [`JournalError`].
-    pub fn open(path: &Path) -> Result<Self, JournalError> {
-        let failed = |source| JournalError::File {
-            path: path.to_owned(),
-            source,
-        };
-        let mut file = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(path)
-            .map_err(failed)?;
+    /// [`StudyError`] where the file cannot be written or is no table.
+    pub fn open(path: PathBuf) -> Result<Self, StudyError> {
+        let failed = |error: std::io::Error| StudyError::file("write", &path, &error);
+        let mut options = OpenOptions::new();
+        options.read(true).write(true).create(true).truncate(false);
+        let mut file = options.open(&path).map_err(failed)?;
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(failed)?;
-        let whole = bytes
-            .iter()
-            .rposition(|b| *b == b'\n')
-            .map_or(0, |at| at + 1);
-        file.set_len(whole as u64).map_err(failed)?;
+        let whole = bytes.iter().rposition(|b| *b == b'\n');
+        bytes.truncate(whole.map_or(0, |at| at + 1));
+        file.set_len(bytes.len() as u64).map_err(failed)?;
         file.seek(SeekFrom::End(0)).map_err(failed)?;
-        let text = String::from_utf8_lossy(&bytes[..whole]).into_owned();
-        if text.is_empty() {
+        let mut rows = Vec::new();
+        if bytes.is_empty() {
             file.write_all(row::heading().as_bytes()).map_err(failed)?;
-        }
-        let rows = if text.is_empty() {
-            Vec::new()
         } else {
-            row::read(&text).map_err(|reason| JournalError::Content {
-                path: path.to_owned(),
-                reason,
-            })?
-        };
-        let done = rows.iter().map(name).collect();
-        Ok(Self {
-            path: path.to_owned(),
-            file,
-            rows,
-            done,
-        })
+            rows = row::read(&String::from_utf8_lossy(&bytes)).map_err(|reason| {
+                let path = path.clone();
+                StudyError::Table { path, reason }
+            })?;
+        }
+        Ok(Self { path, file, rows })
     }
 
-    /// Whether this render is in the table.
-    pub fn has(&self, name: &Name) -> bool {
-        self.done.contains(name)
+    /// Whether the table has this render of the point with these values.
+    pub fn has(&self, values: &[String], replicate: u32) -> bool {
+        let is_it = |row: &Row| row.values == values && row.replicate == u64::from(replicate);
+        self.rows.iter().any(is_it)
     }
 
     /// Adds a row, and brings it to the disk.
     ///
     /// # Errors
-    /// [`JournalError::File`].
-    pub fn add(&mut self, row: Row) -> Result<(), JournalError> {
+    /// [`StudyError`] where the file cannot be written.
+    pub fn add(&mut self, row: Row) -> Result<(), StudyError> {
         let written = self.file.write_all(row.line().as_bytes());
         written
             .and_then(|()| self.file.flush())
-            .map_err(|source| JournalError::File {
-                path: self.path.clone(),
-                source,
-            })?;
-        self.done.insert(name(&row));
+            .map_err(|error| StudyError::file("write", &self.path, &error))?;
         self.rows.push(row);
         Ok(())
     }
-}
-
-fn name(row: &Row) -> Name {
-    (row.values.clone(), row.replicate)
 }

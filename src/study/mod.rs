@@ -1,11 +1,9 @@
-//! Error over samples and seconds, and whether renders agree with references and their error bars
-//! with their errors.
+//! Error over samples and seconds, and whether error bars agree with errors.
 //!
-//! A study ([`run`]) renders every point of a [`grid`] of choices several times with independent
+//! A study ([`run`]) renders every point of a [`grid`] of settings several times with independent
 //! seeds, compares each render with a [`mod@reference`], and keeps one [`Row`](crate::chart::Row)
-//! of each in a [`journal`]; [`budget`] sees to it that this fits into the time there is.
+//! of each in a [`journal`]; [`budget`] checks that this fits into the time and memory there is.
 
-pub mod agreement;
 pub mod axis;
 pub mod budget;
 pub mod choice;
@@ -13,23 +11,18 @@ pub mod clock;
 pub mod coverage;
 pub mod grid;
 pub mod journal;
-pub mod measure;
 pub mod own;
-pub mod record;
 pub mod reference;
 pub mod report;
 pub mod run;
 pub mod subject;
 pub mod work;
 
-use std::path::PathBuf;
-
-use crate::render::seeds;
+use std::path::{Path, PathBuf};
 
 /// Why a study cannot be carried out.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
-    /// One replicate has no spread.
     #[error("a study needs at least 2 independent renders of a point to know its errors' spread")]
     OneReplicate,
     /// `center` estimates another picture than the other samplers.
@@ -38,36 +31,49 @@ pub enum StudyError {
          others: study it alone"
     )]
     TwoPictures,
-    /// Stopped before there was anything to keep.
     #[error("stopped before the reference was finished: there is nothing to take up again")]
     Interrupted,
-    /// The directory cannot be made.
-    #[error("cannot make the directory {}: {source}", path.display())]
-    Directory {
-        /// The directory.
+    #[error("cannot {action} {}: {reason}", path.display())]
+    File {
+        /// A verb and, where the path alone does not say it, what it acts on.
+        action: &'static str,
         path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
+        reason: String,
     },
-    /// A point is not valid.
+    #[error("{}: {reason}", path.display())]
+    Table {
+        path: PathBuf,
+        reason: crate::chart::row::TableError,
+    },
+    /// The directory holds another study.
+    #[error(
+        "{} is of another study: {key} is {found} there and {wanted} here", path.display()
+    )]
+    Other {
+        path: PathBuf,
+        /// What differs.
+        key: String,
+        found: String,
+        wanted: String,
+    },
     #[error(transparent)]
     Subject(#[from] subject::SubjectError),
-    /// The grid contradicts itself.
     #[error(transparent)]
     Grid(#[from] grid::GridError),
-    /// The reference cannot be used.
     #[error(transparent)]
     Reference(#[from] reference::ReferenceError),
-    /// The study would take too much.
     #[error(transparent)]
     Budget(#[from] budget::BudgetError),
-    /// The directory holds another study.
-    #[error(transparent)]
-    Record(#[from] record::RecordError),
-    /// The table cannot be used.
-    #[error(transparent)]
-    Journal(#[from] journal::JournalError),
-    /// A picture cannot be written.
     #[error(transparent)]
     Film(#[from] crate::film::Error),
+}
+
+impl StudyError {
+    fn file(action: &'static str, path: &Path, reason: &dyn ToString) -> Self {
+        Self::File {
+            action,
+            path: path.to_owned(),
+            reason: reason.to_string(),
+        }
+    }
 }

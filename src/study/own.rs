@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use super::measure::planes;
-use super::reference::{Reference, ReferenceError};
+use super::reference::{Reference, ReferenceError, pixels, planes};
 use super::subject::Ready;
 use crate::film::provenance::hash;
 use crate::film::{Attribute, Picture, exr, names};
@@ -19,24 +18,20 @@ pub const FIRST: u32 = 16;
 /// Means and squared deviations over independent renders (B. P. Welford, Technometrics 4, 1962).
 #[derive(Debug, Clone)]
 pub struct Own {
-    count: u32,
+    /// Renders that have gone in.
+    pub count: u32,
     mean: [Vec<f64>; 3],
     squares: [Vec<f64>; 3],
 }
 
 impl Own {
-    /// Nothing yet.
     pub fn new(pixels: usize) -> Self {
+        let zeros = || std::array::from_fn(|_| vec![0.0; pixels]);
         Self {
             count: 0,
-            mean: [(); 3].map(|()| vec![0.0; pixels]),
-            squares: [(); 3].map(|()| vec![0.0; pixels]),
+            mean: zeros(),
+            squares: zeros(),
         }
-    }
-
-    /// Renders that have gone in.
-    pub fn count(&self) -> u32 {
-        self.count
     }
 
     /// Adds a render; `false` if it was stopped before its end, which leaves all as it was.
@@ -66,7 +61,7 @@ impl Own {
             name: "own".to_owned(),
             size,
             channels: self.mean.clone(),
-            variances: [0, 1, 2].map(|c| variance(&self.squares[c])),
+            variances: self.squares.each_ref().map(variance),
         }
     }
 }
@@ -94,12 +89,12 @@ pub fn write(
     overrides: &str,
 ) -> Result<(), crate::film::Error> {
     let mut picture = Picture::new(reference.size[0], reference.size[1]);
-    let triples = |channels: &[Vec<f64>; 3]| {
-        let pixel = |i: usize| [0, 1, 2].map(|c| channels[c][i] as f32);
-        (0..channels[0].len()).map(pixel).collect::<Vec<_>>()
-    };
-    picture.push_triple(names::BEAUTY, names::RGB, &triples(&reference.channels));
-    picture.push_triple(names::VARIANCE, names::RGB, &triples(&reference.variances));
+    for (layer, channels) in [
+        (names::BEAUTY, &reference.channels),
+        (names::VARIANCE, &reference.variances),
+    ] {
+        picture.push_triple(layer, names::RGB, &pixels(channels));
+    }
     let source = &ready.scene.source;
     let texts = [
         ("sceneFile", source.path.clone()),
@@ -112,7 +107,7 @@ pub fn write(
         let attribute = (name.to_owned(), Attribute::Text(value));
         picture.attributes.push(attribute);
     }
-    let counts = [("replicates", own.count()), ("spp", ready.scene.image.spp)];
+    let counts = [("replicates", own.count), ("spp", ready.scene.image.spp)];
     for (name, value) in counts {
         let value = Attribute::whole_number(value.into());
         picture.attributes.push((name.to_owned(), value));

@@ -1,19 +1,20 @@
-//! What the renders of a study are compared with, and how well that is known itself.
+//! What the renders of a study are compared with, how well that is known itself, and the comparison.
 
 use std::path::{Path, PathBuf};
 
 use crate::film::names::{self, VARIANCE};
+use crate::film::pixels::Estimate;
 use crate::film::provenance::hash;
 use crate::film::{Attribute, Picture, exr};
 use crate::scene::{Overrides, Scene};
 use crate::spectrum::Spectrum;
 use crate::spectrum::observer::{spectrum_to_xyz, xyz_to_linear_srgb};
-use crate::stats::metrics::{RELMSE_EPSILON, mean};
+use crate::stats::metrics::{self, Metric, mean, mean_over_channels};
 
 /// Linear R, G, B of every pixel with their variances.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
-    /// What it is: a file, `truth` or `own`.
+    /// The path of its file, `truth` or `own`.
     pub name: String,
     /// Width and height in pixels.
     pub size: [usize; 2],
@@ -23,22 +24,30 @@ pub struct Reference {
     pub variances: [Vec<f64>; 3],
 }
 
+/// The errors of a render, means over R, G, B.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measured {
+    /// Mean squared error, the reference's variance taken off; may be below 0.
+    pub mse: f64,
+    /// Relative mean squared error, the same.
+    pub relmse: f64,
+    /// Signed mean error over the reference's mean.
+    pub bias: Metric,
+    /// Mean of the squared standard errors that the render says it has; NaN with one replicate.
+    pub estimated_mse: f64,
+}
+
 /// Why a picture cannot be the reference of a scene.
 #[derive(Debug, thiserror::Error)]
 pub enum ReferenceError {
-    /// It cannot be read.
     #[error(transparent)]
     File(#[from] crate::film::Error),
-    /// It has no R, G, B.
-    #[error("{}: it has no channels R, G, B", .0.display())]
-    NoColour(PathBuf),
     /// It does not say how well it is known.
     #[error(
         "{}: it has no channels variance.R, variance.G, variance.B, so what of a measured error is its own \
          cannot be told; render it with replicates and write them", .0.display()
     )]
     NoVariance(PathBuf),
-    /// Another size.
     #[error(
         "{}: it has {}x{} pixels, the scene {}x{}",
         path.display(), found[0], found[1], wanted[0], wanted[1]
@@ -49,46 +58,15 @@ pub enum ReferenceError {
         /// The scene's.
         wanted: [usize; 2],
     },
-    /// It holds what is no number, or a negative variance.
-    #[error(
-        "{}: the channel {channel} has {count} pixels that are no numbers or, for a variance, below 0; the \
-         first is at {},{}: make the reference again", path.display(), first[0], first[1]
-    )]
-    NotANumber {
-        path: PathBuf,
-        /// The first channel that has them.
-        channel: String,
-        count: usize,
-        /// Column and row of the first.
-        first: [usize; 2],
-    },
-    /// It does not say which scene it shows.
-    #[error(
-        "{}: it does not say which scene it shows (the attribute sceneHash is missing)", .0.display()
-    )]
-    NoHash(PathBuf),
-    /// It shows another scene.
-    #[error(
-        "{}: it shows another scene: its sceneHash is {found}, that of {scene} is {wanted}; if the scene \
-         has changed, the reference must be made again", path.display()
-    )]
-    Hash {
-        path: PathBuf,
-        /// The hash in it.
-        found: String,
-        /// The scene file.
-        scene: String,
-        wanted: String,
-    },
     /// It shows the scene with something else laid over it.
     #[error("{}: it shows {found}, but {wanted} is to be studied", path.display())]
     Variant {
         path: PathBuf,
-        /// What it shows.
         found: String,
-        /// What is wanted.
         wanted: String,
     },
+    #[error("{}: {reason}", path.display())]
+    Unfit { path: PathBuf, reason: String },
 }
 
 /// Keys that choose the estimator, not what is estimated; and the size, which is compared itself.
@@ -101,14 +79,6 @@ const OF_THE_ESTIMATOR: [&str; 7] = [
     "image.precision",
     "image.wavelengths",
 ];
-
-/// What is studied: the scene and what was laid over it.
-#[derive(Debug, Clone, Copy)]
-pub struct Subject<'a> {
-    pub scene: &'a Scene,
-    /// `--set` and the options that stand for it.
-    pub set: &'a [(String, String)],
-}
 
 impl Reference {
     /// A picture that has the same spectrum everywhere.
@@ -127,15 +97,46 @@ impl Reference {
         }
     }
 
-    /// Reads a reference of a scene.
+    /// Reads a reference of a scene; `set` is what else is laid over the scene's file.
     ///
     /// # Errors
     /// [`ReferenceError`]: what is wrong with it as a reference of that scene.
-    pub fn read(path: &Path, subject: Subject<'_>) -> Result<Self, ReferenceError> {
+    pub fn read(
+        path: &Path,
+        scene: &Scene,
+        set: &[(String, String)],
+    ) -> Result<Self, ReferenceError> {
         let picture = exr::read(path)?;
-        let size = subject.scene.image.size.map(|n| n as usize);
-        check_subject(path, &picture, subject)?;
-        Self::of_picture(path, &picture, size)
+        let text = |name: &str| match picture.attribute(name) {
+            Some(Attribute::Text(text)) => Some(text.as_str()),
+            _ => None,
+        };
+        let wanted = hash(&scene.source.text);
+        let Some(found) = text("sceneHash") else {
+            let missing =
+                "it does not say which scene it shows (the attribute sceneHash is missing)";
+            return Err(unfit(path, missing.to_owned()));
+        };
+        if found != wanted {
+            let reason = format!(
+                "it shows another scene: its sceneHash is {found}, that of {} is {wanted}; if the scene \
+                 has changed, the reference must be made again",
+                scene.source.path
+            );
+            return Err(unfit(path, reason));
+        }
+        let its_own = Overrides::pairs(text("overrides").unwrap_or_default());
+        let found = variant(text("panel").unwrap_or_default(), &its_own);
+        let wanted = variant(scene.panel.as_deref().unwrap_or_default(), set);
+        if found != wanted {
+            let path = path.to_owned();
+            return Err(ReferenceError::Variant {
+                path,
+                found,
+                wanted,
+            });
+        }
+        Self::of_picture(path, &picture, scene.image.size.map(|n| n as usize))
     }
 
     /// The reference in a picture of this size.
@@ -147,43 +148,46 @@ impl Reference {
         picture: &Picture,
         wanted: [usize; 2],
     ) -> Result<Self, ReferenceError> {
-        let path = path.to_owned();
         let found = [picture.width, picture.height];
         if found != wanted {
+            let path = path.to_owned();
             return Err(ReferenceError::Size {
                 path,
                 found,
                 wanted,
             });
         }
-        let channels =
-            planes(picture, names::BEAUTY).ok_or_else(|| ReferenceError::NoColour(path.clone()))?;
-        let variances =
-            planes(picture, VARIANCE).ok_or_else(|| ReferenceError::NoVariance(path.clone()))?;
-        let named = |layer: &'static str| {
-            names::RGB
-                .into_iter()
-                .map(move |c| names::in_layer(layer, c))
-        };
-        let all = named(names::BEAUTY).chain(named(VARIANCE));
-        for (channel, values) in all.zip(channels.iter().chain(&variances)) {
-            let signed = !channel.starts_with(VARIANCE);
-            let wrong = |v: &f64| !(v.is_finite() && (signed || *v >= 0.0));
-            if let Some(at) = values.iter().position(wrong) {
-                return Err(ReferenceError::NotANumber {
-                    path,
-                    channel,
-                    count: values.iter().filter(|v| wrong(v)).count(),
-                    first: [at % found[0], at / found[0]],
-                });
-            }
-        }
+        let channels = checked(path, picture, names::BEAUTY)?
+            .ok_or_else(|| unfit(path, "it has no channels R, G, B".to_owned()))?;
+        let variances = checked(path, picture, VARIANCE)?
+            .ok_or_else(|| ReferenceError::NoVariance(path.to_owned()))?;
         Ok(Self {
             name: path.display().to_string(),
             size: found,
             channels,
             variances,
         })
+    }
+
+    /// Compares a render of the same size with it.
+    pub fn measure(&self, estimates: &[Estimate]) -> Measured {
+        let mut mse = 0.0;
+        let (mut relative, mut bias) = (Vec::new(), Vec::new());
+        for (c, x) in planes(estimates).iter().enumerate() {
+            let (r, variance) = (&self.channels[c], &self.variances[c]);
+            mse += (metrics::mse(x, r).value - mean(variance)) / 3.0;
+            relative.push(metrics::relmse(x, r, Some(variance)));
+            bias.push(metrics::relative_mean_error(x, r));
+        }
+        let squares = estimates
+            .iter()
+            .map(|e| e.standard_error.iter().map(|s| s * s).sum::<f64>());
+        Measured {
+            mse,
+            relmse: mean_over_channels(&relative).value,
+            bias: mean_over_channels(&bias),
+            estimated_mse: squares.sum::<f64>() / (3 * estimates.len()) as f64,
+        }
     }
 
     /// Root mean squared standard error, the mean over channels under the root.
@@ -196,76 +200,60 @@ impl Reference {
         self.variances.iter().map(|v| mean(v)).sum::<f64>() / 3.0
     }
 
-    /// Its variance in the sense of `relmse`.
+    /// Its variance in the sense of `relmse`: minus what that is of the reference itself.
     pub fn relmse(&self) -> f64 {
-        let channel = |(values, variances): (&Vec<f64>, &Vec<f64>)| {
-            let epsilon = RELMSE_EPSILON * mean(values) * mean(values);
-            let terms = values.iter().zip(variances);
-            let sum: f64 = terms.map(|(r, v)| v / (r * r + epsilon)).sum();
-            sum / values.len() as f64
-        };
         let pairs = self.channels.iter().zip(&self.variances);
-        pairs.map(channel).sum::<f64>() / 3.0
-    }
-
-    /// Colours for looking at.
-    pub fn rgb(&self) -> Vec<[f32; 3]> {
-        let [r, g, b] = &self.channels;
-        let pixels = r.iter().zip(g).zip(b);
-        pixels
-            .map(|((r, g), b)| [*r as f32, *g as f32, *b as f32])
-            .collect()
+        let relmse = |(r, variance): (&Vec<f64>, &Vec<f64>)| {
+            metrics::relmse(r, r, Some(variance)).value.abs()
+        };
+        pairs.map(relmse).sum::<f64>() / 3.0
     }
 }
 
-/// The three channels of a layer.
-fn planes(picture: &Picture, layer: &str) -> Option<[Vec<f64>; 3]> {
-    let mut planes: [Vec<f64>; 3] = Default::default();
-    for (plane, component) in planes.iter_mut().zip(names::RGB) {
-        let values = picture.floats(&names::in_layer(layer, component))?;
-        *plane = values.iter().map(|v| f64::from(*v)).collect();
-    }
-    Some(planes)
+/// R, G and B of estimates, each for itself.
+pub fn planes(estimates: &[Estimate]) -> [Vec<f64>; 3] {
+    std::array::from_fn(|c| estimates.iter().map(|e| e.mean[c]).collect())
 }
 
-/// Checks that the picture shows this scene with these things laid over it.
-fn check_subject(
+/// R, G and B of each pixel together.
+pub fn pixels([r, g, b]: &[Vec<f64>; 3]) -> Vec<[f32; 3]> {
+    let pixels = r.iter().zip(g).zip(b);
+    pixels
+        .map(|((r, g), b)| [*r as f32, *g as f32, *b as f32])
+        .collect()
+}
+
+fn unfit(path: &Path, reason: String) -> ReferenceError {
+    let path = path.to_owned();
+    ReferenceError::Unfit { path, reason }
+}
+
+/// The three channels of a layer, without values that are not finite or variances below 0; `None`
+/// where one is missing.
+fn checked(
     path: &Path,
     picture: &Picture,
-    subject: Subject<'_>,
-) -> Result<(), ReferenceError> {
-    let text = |name: &str| match picture.attribute(name) {
-        Some(Attribute::Text(text)) => Some(text.clone()),
-        _ => None,
-    };
-    let scene = subject.scene;
-    let wanted = hash(&scene.source.text);
-    match text("sceneHash") {
-        None => return Err(ReferenceError::NoHash(path.to_owned())),
-        Some(found) if found != wanted => {
-            return Err(ReferenceError::Hash {
-                path: path.to_owned(),
-                found,
-                scene: scene.source.path.clone(),
-                wanted,
-            });
+    layer: &str,
+) -> Result<Option<[Vec<f64>; 3]>, ReferenceError> {
+    let mut planes: [Vec<f64>; 3] = Default::default();
+    for (plane, component) in planes.iter_mut().zip(names::RGB) {
+        let channel = names::in_layer(layer, component);
+        let Some(values) = picture.floats(&channel) else {
+            return Ok(None);
+        };
+        let wrong = |v: &f32| !(v.is_finite() && (layer != VARIANCE || *v >= 0.0));
+        if let Some(at) = values.iter().position(wrong) {
+            let count = values.iter().filter(|v| wrong(v)).count();
+            let (x, y) = (at % picture.width, at / picture.width);
+            let reason = format!(
+                "the channel {channel} has {count} pixels that are no numbers or, for a variance, below 0; the \
+                 first is at {x},{y}: make the reference again"
+            );
+            return Err(unfit(path, reason));
         }
-        Some(_) => {}
+        *plane = values.iter().map(|v| f64::from(*v)).collect();
     }
-    let found = variant(
-        &text("panel").unwrap_or_default(),
-        &Overrides::pairs(&text("overrides").unwrap_or_default()),
-    );
-    let wanted = variant(scene.panel.as_deref().unwrap_or_default(), subject.set);
-    if found == wanted {
-        Ok(())
-    } else {
-        Err(ReferenceError::Variant {
-            path: path.to_owned(),
-            found,
-            wanted,
-        })
-    }
+    Ok(Some(planes))
 }
 
 /// The panel and what else changes what is estimated, in words.
@@ -276,14 +264,12 @@ fn variant(panel: &str, set: &[(String, String)]) -> String {
         .map(|(key, value)| format!("{key}={}", value.replace(' ', "")))
         .collect();
     said.sort();
-    let panel = if panel.is_empty() {
-        "the scene without a panel".to_owned()
-    } else {
-        format!("the panel \"{panel}\"")
+    let mut words = match panel {
+        "" => "the scene without a panel".to_owned(),
+        panel => format!("the panel \"{panel}\""),
     };
-    if said.is_empty() {
-        panel
-    } else {
-        format!("{panel} with {}", said.join(" "))
+    if !said.is_empty() {
+        words = format!("{words} with {}", said.join(" "));
     }
+    words
 }

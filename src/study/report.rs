@@ -7,11 +7,12 @@ use base64::engine::general_purpose::STANDARD;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder as _};
 
-use super::reference::Reference;
+use super::reference::{Reference, pixels};
 use super::run::{Request, Study};
 use super::work::picture_name;
-use crate::chart::{Curve, Figure, Mean, Point, Row, best};
+use crate::chart::{Curve, Figure, Point, best};
 use crate::film::{exr, png};
+use crate::stats::Estimate;
 use crate::stats::metrics::{RELMSE_EPSILON, mean};
 
 const PAGE: &str = include_str!("report.html");
@@ -26,38 +27,26 @@ pub fn html(request: &Request, study: &Study, curves: &[Curve], charts: &[String
         .iter()
         .map(|svg| format!("<div class=\"chart\">\n{svg}\n</div>\n"))
         .collect();
-    let parts = [
-        (
-            "{{title}}",
-            escaped(&format!("{name}{panel}: error over samples and seconds")),
-        ),
-        ("{{summary}}", summary(study, curves)),
-        ("{{charts}}", charts),
-        ("{{about_pictures}}", escaped(&pictures.about)),
-        ("{{pairs}}", pictures.pairs.clone()),
-        ("{{table}}", table(curves, study.grid.abscissa.key.column())),
-        ("{{settings}}", settings(request, study)),
-        ("{{command}}", escaped(&request.command)),
-        ("{{data}}", pictures.data),
-    ];
+    let title = escaped(&format!("{name}{panel}: error over samples and seconds"));
+    let part = |name: &str| match name {
+        "title" => title.clone(),
+        "summary" => summary(study, curves),
+        "charts" => charts.clone(),
+        "about_pictures" => escaped(&pictures.about),
+        "pairs" => pictures.pairs.clone(),
+        "table" => table(curves, study.grid.abscissa.key.column()),
+        "settings" => settings(request, study),
+        "command" => escaped(&request.command),
+        "data" => pictures.data.clone(),
+        _ => String::new(),
+    };
     // One pass over the page, so that nothing in a part is taken for a place of another.
-    let mut page = String::new();
-    let mut rest = PAGE;
-    while let Some(at) = rest.find("{{") {
-        page.push_str(&rest[..at]);
-        rest = &rest[at..];
-        match parts.iter().find(|(name, _)| rest.starts_with(name)) {
-            Some((name, part)) => {
-                page.push_str(part);
-                rest = &rest[name.len()..];
-            }
-            None => {
-                page.push_str("{{");
-                rest = &rest[2..];
-            }
-        }
+    let mut pieces = PAGE.split("{{");
+    let mut page = pieces.next().unwrap_or_default().to_owned();
+    for (name, rest) in pieces.filter_map(|piece| piece.split_once("}}")) {
+        page.push_str(&part(name));
+        page.push_str(rest);
     }
-    page.push_str(rest);
     page
 }
 
@@ -126,12 +115,9 @@ fn table(curves: &[Curve], abscissa: &str) -> String {
 }
 
 fn numbers(curve: &Curve, point: &Point) -> [String; 9] {
-    let with = |m: Mean| {
-        if m.half.is_nan() {
-            format!("{:.3e}", m.value)
-        } else {
-            format!("{:.3e} ± {:.1e}", m.value, m.half)
-        }
+    let with = |m: Estimate| match m.half_width(0.05) {
+        half if half.is_nan() => format!("{:.3e}", m.value),
+        half => format!("{:.3e} ± {half:.1e}", m.value),
     };
     let ratio = point.estimated_over_actual();
     let floor = if point.at_floor() {
@@ -166,7 +152,7 @@ fn settings(request: &Request, study: &Study) -> String {
         .collect();
     let [seconds, rendering] = study.seconds;
     let curves: Vec<String> = study.grid.others.iter().map(ToString::to_string).collect();
-    let threads = study.rows.first().map_or(0, |row: &Row| row.threads);
+    let threads = study.rows.first().map_or(0, |row| row.threads);
     let pairs = [
         ("scene", request.subject.path.display().to_string()),
         ("panel", overrides.panel.clone().unwrap_or_default()),
@@ -206,9 +192,9 @@ struct Pictures {
 impl Pictures {
     fn of(request: &Request, study: &Study, curves: &[Curve]) -> Self {
         let reference = &study.reference;
-        let exposure = png::exposure(&reference.rgb());
+        let exposure = png::exposure(&pixels(&reference.channels));
         let scale = scale(curves);
-        let mut entries = vec![("reference".to_owned(), reference.rgb())];
+        let mut entries = vec![("reference".to_owned(), pixels(&reference.channels))];
         let mut data: Vec<String> = Vec::new();
         let mut pairs = String::new();
         for (i, curve) in curves.iter().enumerate() {

@@ -5,17 +5,15 @@ use std::time::Instant;
 
 use super::StudyError;
 use super::axis::Axis;
-use super::budget;
+use super::budget::{self, Costs};
 use super::choice::{self, Choice, Found};
 use super::clock::Clock;
 use super::grid::Grid;
-use super::journal::Journal;
-use super::record::Record;
+use super::journal::{self, Journal};
 use super::reference::Reference;
 use super::subject::{Ready, Subject};
-use super::work::{Timed, Work};
-use crate::chart::Key;
-use crate::chart::Row;
+use super::work::Work;
+use crate::chart::{Key, Row};
 use crate::film::{provenance, whole};
 use crate::render::memory;
 
@@ -80,38 +78,30 @@ pub fn run(request: &Request, watch: &mut dyn Watch) -> Result<Study, StudyError
         .ready(&request.subject.overrides, String::new())?;
     // Before there is a reference as large as the picture.
     budget::check_memory(&base, memory::available())?;
-    let directory = |source| StudyError::Directory {
-        path: request.directory.clone(),
-        source,
-    };
     let found = choice::find(request, &base.scene)?;
     for note in &found.notes {
         watch.note(note);
     }
     let said = said(request, &base, &found);
     let record = request.directory.join("study.toml");
-    let resumed = Record::resume(&record, &said)?;
+    let resumed = journal::resume(&record, &said)?;
     let goes_on = resumed.is_some();
     let axes = axes(request, &base)?;
-    let (grid, timed) = match resumed {
+    let (grid, costs) = match resumed {
         Some(grid) => (grid, None),
         None => planned(request, &axes, &found, watch)?,
     };
     let mut work = Work::new(request, grid, &found)?;
     budget::check_memory(work.largest(), memory::available())?;
-    let timed = timed.unwrap_or_else(|| work.pilot(request.budget));
-    let cost = work.cost(&timed);
+    let costs = costs.unwrap_or_else(|| work.pilot());
     if !goes_on {
-        let grid = &work.grid;
-        budget::check(grid, &work.points, &work.samples, &cost, request.budget)?;
+        let abscissa = work.grid.abscissa.key;
+        costs.check(abscissa, &work.priced(&costs), request.budget)?;
     }
-    std::fs::create_dir_all(&request.directory).map_err(directory)?;
-    let record_text = Record {
-        request: said,
-        grid: work.grid.clone(),
-        command: request.command.clone(),
-    }
-    .text();
+    let directory = &request.directory;
+    std::fs::create_dir_all(directory)
+        .map_err(|error| StudyError::file("make the directory", directory, &error))?;
+    let record_text = journal::record(&said, &work.grid, &request.command);
     whole::write(&record, |file| {
         use std::io::Write as _;
         let written = file.write_all(record_text.as_bytes());
@@ -120,12 +110,12 @@ pub fn run(request: &Request, watch: &mut dyn Watch) -> Result<Study, StudyError
             source,
         })
     })?;
-    let mut journal = Journal::open(&request.directory.join("study.csv"))?;
-    let mut clock = Clock::new(watch, work.remaining(&cost, &journal));
+    let mut journal = Journal::open(directory.join("study.csv"))?;
+    let mut clock = Clock::new(watch, work.remaining(&costs, &journal));
     let Some((reference, about_reference)) = work.reference(found, &mut clock)? else {
         return Err(StudyError::Interrupted);
     };
-    let complete = work.go(request, &reference, &cost, &mut journal, &mut clock)?;
+    let complete = work.go(&reference, &costs, &mut journal, &mut clock)?;
     let rendering = clock.rendering;
     Ok(Study {
         grid: work.grid,
@@ -168,7 +158,7 @@ fn planned(
     axes: &[Axis],
     found: &Found,
     watch: &mut dyn Watch,
-) -> Result<(Grid, Option<Timed>), StudyError> {
+) -> Result<(Grid, Option<Costs>), StudyError> {
     if let Some(grid) = Grid::new(axes)? {
         return Ok((grid, None));
     }
@@ -183,25 +173,25 @@ fn planned(
     };
     let mut work = Work::new(request, grid.clone(), found)?;
     budget::check_memory(work.largest(), memory::available())?;
-    let timed = work.pilot(request.budget);
-    let abscissa = budget::plan(&work.cost(&timed), request.budget)?;
+    let costs = work.pilot();
+    let abscissa = costs.plan(request.budget)?;
     watch.note(&format!(
         "planned from a pilot for {:.0} s: {} samples a pixel, {} renders each",
         request.budget,
         abscissa.values.join(", "),
         request.replicates
     ));
-    Ok((Grid { abscissa, ..grid }, Some(timed)))
+    Ok((Grid { abscissa, ..grid }, Some(costs)))
 }
 
 /// What names the study: nothing that leaves the numbers as they are.
-fn said(request: &Request, base: &Ready, found: &Found) -> Vec<(String, String)> {
+fn said(request: &Request, base: &Ready, found: &Found) -> Vec<(&'static str, String)> {
     let source = &base.scene.source;
     let set = request.subject.overrides.set.iter();
     let set: Vec<_> = set.map(|(key, value)| format!("{key}={value}")).collect();
     let over: Vec<_> = request.axes.iter().map(Axis::to_string).collect();
     let overrides = &request.subject.overrides;
-    let pairs = [
+    vec![
         ("scene", source.path.clone()),
         ("scene_hash", provenance::hash(&source.text)),
         ("panel", overrides.panel.clone().unwrap_or_default()),
@@ -211,6 +201,5 @@ fn said(request: &Request, base: &Ready, found: &Found) -> Vec<(String, String)>
         ("replicates", request.replicates.to_string()),
         ("reference", found.name()),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
-    ];
-    pairs.map(|(key, value)| (key.to_owned(), value)).to_vec()
+    ]
 }

@@ -4,11 +4,10 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use super::grid::Point;
-use super::seeds::seed;
+use super::grid::Choices;
 use crate::chart::Key;
-use crate::plan::choose::Precision;
 use crate::plan::{Plan, PlanError};
+use crate::render::seeds::seed;
 use crate::render::tile::Window;
 use crate::render::{Instructions, Progress, Rendered, Request, render};
 use crate::scene::{self, Overrides, Scene, SceneError};
@@ -20,22 +19,18 @@ pub struct Subject {
     pub path: PathBuf,
     /// What is laid over it at every point.
     pub overrides: Overrides,
-    /// Instruction set.
     pub instructions: Instructions,
 }
 
 /// Why a point cannot be rendered.
 #[derive(Debug, thiserror::Error)]
 pub enum SubjectError {
-    /// The scene is not valid there.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// It cannot be planned.
     #[error("at {at}: {reason}")]
     Plan {
         /// What is chosen there.
         at: String,
-        /// What the plan says.
         reason: PlanError,
     },
 }
@@ -48,7 +43,6 @@ pub struct Ready {
     /// What names it among the renders of the study.
     pub name: String,
     instructions: Instructions,
-    base_seed: u64,
 }
 
 impl Subject {
@@ -56,17 +50,25 @@ impl Subject {
     ///
     /// # Errors
     /// [`SubjectError`] where it is not valid or cannot be planned.
-    pub fn at(&self, point: &Point) -> Result<Ready, SubjectError> {
+    pub fn at(&self, choices: &Choices) -> Result<Ready, SubjectError> {
         let mut overrides = self.overrides.clone();
-        for (key, value) in &point.choices {
-            if *key == Key::Finder {
-                overrides.finder = Some(value.clone());
-            } else {
-                let key = format!("image.{}", key.image_key());
-                overrides.set.push((key, value.clone()));
-            }
+        for (key, value) in choices {
+            let key = match key {
+                Key::Finder => {
+                    overrides.finder = Some(value.clone());
+                    continue;
+                }
+                Key::Scrambles => "replicates",
+                other => other.column(),
+            };
+            let setting = (format!("image.{key}"), value.clone());
+            overrides.set.push(setting);
         }
-        self.ready(&overrides, named(&point.choices))
+        let name = choices
+            .iter()
+            .map(|(key, value)| format!("{}={value}", key.column()))
+            .collect::<Vec<_>>();
+        self.ready(&overrides, name.join(" "))
     }
 
     /// The scene with these overrides instead.
@@ -80,7 +82,6 @@ impl Subject {
             reason,
         })?;
         Ok(Ready {
-            base_seed: scene.image.seed,
             scene,
             plan,
             name,
@@ -89,19 +90,15 @@ impl Subject {
     }
 }
 
-/// Choices in words.
-pub fn named(choices: &[(Key, String)]) -> String {
-    let said: Vec<_> = choices
-        .iter()
-        .map(|(key, value)| format!("{}={value}", key.column()))
-        .collect();
-    said.join(" ")
-}
-
 impl Ready {
     /// The seed of one of its renders.
     pub fn seed(&self, replicate: u32) -> u64 {
-        seed(self.base_seed, &self.name, replicate)
+        seed(self.scene.image.seed, &self.name, replicate)
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> [usize; 2] {
+        self.scene.image.size.map(|n| n as usize)
     }
 
     /// Renders with the seed of this replicate, the scene's number of samples.
@@ -128,20 +125,17 @@ impl Ready {
     }
 
     /// What a table says about each choice; empty is the renderer's own choice, or no limit.
-    pub fn values(&self, point: &Point) -> [String; Key::ALL.len()] {
+    pub fn values(&self, choices: &Choices) -> [String; Key::ALL.len()] {
         let image = &self.scene.image;
         let number = |n: Option<u32>| n.map(|n| n.to_string()).unwrap_or_default();
         Key::ALL.map(|key| {
-            if let Some(value) = point.choice(key) {
-                return value.to_owned();
+            if let Some((_, value)) = choices.iter().find(|(other, _)| *other == key) {
+                return value.clone();
             }
             match key {
                 Key::Spp => image.spp.to_string(),
                 Key::Sampler => image.sampler.name().to_owned(),
-                Key::Precision => match self.plan.choices.precision {
-                    Precision::Single => "f32".to_owned(),
-                    Precision::Double => "f64".to_owned(),
-                },
+                Key::Precision => self.plan.choices.precision.name().to_owned(),
                 Key::Wavelengths => self.plan.choices.wavelengths.to_string(),
                 Key::MaxDepth => number(image.max_depth),
                 Key::Finder => String::new(),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use etalon::inside::render::session::{Request, Unwatched, render as run};
 use etalon::inside::scene::parse;
-use etalon::inside::stats::{family, student};
+use etalon::inside::stats::student;
 use etalon::{Estimate, Overrides, Plan, Rendered, Window};
 use rayon::prelude::*;
 
@@ -295,7 +295,7 @@ pub fn judge<'a>(numbers: impl Iterator<Item = (&'a Measurement, f64, &'a Case)>
 /// Holm's procedure for (p-value, description).
 pub fn holm(all: &[(f64, String)]) -> Vec<String> {
     let p_values: Vec<f64> = all.iter().map(|(p, _)| *p).collect();
-    let rejected = family::holm(&p_values, FALSE_ALARM);
+    let rejected = crate::statistics_support::holm(&p_values, FALSE_ALARM);
     let words = |index: usize| format!("{} (p = {:.1e})", all[index].1, all[index].0);
     rejected.into_iter().map(words).collect()
 }

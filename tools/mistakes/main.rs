@@ -3,6 +3,9 @@
 //!
 //!     cargo bench --bench mistakes -- --runs 100 --honest 1000
 
+#[path = "../../tests/agreement/mod.rs"]
+#[allow(dead_code, reason = "shared with the tests, which ask more of it")]
+mod agreement;
 mod planted;
 mod scenes;
 mod suite;

@@ -2,7 +2,10 @@
 //! place of the reference and both sides drawn afresh each time.
 
 use etalon::Plan;
-use etalon::inside::study::agreement::{Case, Levels, Paths, Planned, decide, plan};
+
+use crate::agreement::case::Case;
+use crate::agreement::outcome::{Levels, decide};
+use crate::agreement::planned::{Paths, Planned, plan};
 
 use super::planted::{Mistake, plant};
 use super::scenes::{SCENES, scene};

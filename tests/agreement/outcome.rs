@@ -2,10 +2,12 @@
 
 use std::fmt::Write as _;
 
-use super::{Case, CaseError, Planned, Question, ROUNDS};
-use crate::compare::{Judgement, Side, judge};
-use crate::stats::Estimate;
-use crate::stats::verdict::{Verdict, judge as verdict};
+use super::ROUNDS;
+use super::case::{Case, CaseError};
+use super::planned::{Planned, Question};
+use super::verdict::{Verdict, judge as verdict};
+use etalon::inside::compare::{Judgement, Side, judge};
+use etalon::inside::stats::Estimate;
 
 /// Levels of single tests.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,7 +44,6 @@ pub struct Outcome {
 impl Levels {
     /// Shares a level among `cases` cases with `questions` questions in all: half for the questions,
     /// half for the pictures.
-    #[must_use]
     pub fn shared(level: f64, cases: usize, questions: usize) -> Self {
         Self {
             question: level / 2.0 / questions as f64,
@@ -108,21 +109,18 @@ pub fn decide(
 
 impl Outcome {
     /// Whether something is shown to be wrong.
-    #[must_use]
     pub fn alarms(&self) -> bool {
         let failed = |answer: &Answer| answer.verdict == Verdict::Fail;
         self.answers.iter().any(failed) || self.judgement.as_ref().is_some_and(|j| !j.consistent)
     }
 
     /// Questions that stay open.
-    #[must_use]
     pub fn open(&self) -> usize {
         let open = |answer: &&Answer| answer.verdict == Verdict::Inconclusive;
         self.answers.iter().filter(open).count()
     }
 
     /// A line an answer, and one for each test of the picture that rejects.
-    #[must_use]
     pub fn text(&self, case: &Case) -> String {
         let mut text = String::new();
         for answer in &self.answers {

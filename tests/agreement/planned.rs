@@ -1,10 +1,11 @@
 //! How many samples, and what they can show.
 
-use super::{Case, ROUNDS};
-use crate::compare::{Channel, Side, mean_over};
-use crate::film::names;
-use crate::stats::verdict::POWER;
-use crate::stats::{Estimate, student};
+use super::ROUNDS;
+use super::case::Case;
+use etalon::inside::compare::{Channel, Side, mean_over};
+use etalon::inside::film::names;
+use etalon::inside::stats::estimate::POWER;
+use etalon::inside::stats::{Estimate, student};
 
 /// Tolerance of image means, relative, where samples and reference can show that much.
 pub const DELTA: f64 = 1e-3;
@@ -47,7 +48,6 @@ pub struct Planned {
 impl Question {
     /// The picture's mean minus the reference's, and the reference's; `None` where a variance is
     /// unknown or the reference is black.
-    #[must_use]
     pub fn ask(&self, case: &Case, picture: &Side, reference: &Side) -> Option<(Estimate, f64)> {
         let pixels = self
             .region
@@ -61,7 +61,6 @@ impl Question {
     }
 
     /// What it is called.
-    #[must_use]
     pub fn name(&self, case: &Case) -> String {
         let whole = "whole picture";
         let place = self.region.map_or(whole, |i| case.regions[i].name.as_str());
@@ -72,7 +71,6 @@ impl Question {
 /// Plans a case from a pilot of `pilot_spp` paths per pixel, which is not used again. At most
 /// as many camera paths are spent on the first round as `most` says, fewer where those show all image
 /// means of R, G, B to be within [`DELTA`] or are as sharp as is wanted; every other tolerance is what these samples allow at `level`.
-#[must_use]
 pub fn plan(
     case: &Case,
     (pilot, pilot_spp): (&Side, u32),

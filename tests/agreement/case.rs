@@ -2,18 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::film::names;
-use crate::film::pixels::Estimate;
-use crate::film::spectral::channel_name;
-use crate::math::instructions::Instructions;
-use crate::plan::{Plan, PlanError};
-use crate::render::bins::{BinError, BinGrid};
-use crate::render::session::{Rendered, Request, Unwatched, render, render_binned};
-use crate::render::tile::Window;
-use crate::render::trace::{Singular, first_hits};
+use etalon::inside::film::names;
+use etalon::inside::film::pixels::Estimate;
+use etalon::inside::film::spectral::channel_name;
+use etalon::inside::math::instructions::Instructions;
+use etalon::inside::plan::{Plan, PlanError};
+use etalon::inside::render::bins::{BinError, BinGrid};
+use etalon::inside::render::session::{Rendered, Request, Unwatched, render, render_binned};
+use etalon::inside::render::tile::Window;
+use etalon::inside::render::trace::{Singular, first_hits};
 
-use crate::compare::{Channel, Side};
-use crate::scene::{Overrides, Scene, SceneError, load};
+use etalon::inside::compare::{Channel, Side};
+use etalon::inside::scene::{Overrides, Scene, SceneError, load};
 
 /// Independent scrambles per pixel: they cost little of the points' quality, and three degrees of
 /// freedom in each pixel are many in a block.
