@@ -35,6 +35,7 @@ mod oracle_support;
 mod phong_pictures;
 mod plan_bounds;
 mod plan_full;
+mod polynomial_support;
 mod references;
 mod render_goal;
 mod rooms;

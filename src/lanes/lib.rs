@@ -28,6 +28,19 @@ macro_rules! inlined {
     };
 }
 
+/// Methods of one expression each, always inlined, as those of lanes must be.
+macro_rules! methods {
+    ($($(#[$attribute:meta])* $visibility:vis fn $method:ident $arguments:tt -> $result:ty = $value:expr;)*) => {
+        $(
+            $(#[$attribute])*
+            #[inline(always)]
+            $visibility fn $method $arguments -> $result {
+                $value
+            }
+        )*
+    };
+}
+
 pub mod camera;
 pub mod declare;
 #[doc(hidden)]

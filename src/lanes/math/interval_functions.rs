@@ -110,11 +110,8 @@ fn atan_kernel<L: DoubleLanes>(l: L, x: L::Real) -> L::Real {
     let denominator = l.select(large, a, l.select(middle, a + one, one));
     let z = numerator / denominator;
     let series = polynomial(l, z * z, &ATAN) * z;
-    let constant = l.select(
-        large,
-        l.real(FRAC_PI_2),
-        l.select(middle, l.real(FRAC_PI_4), l.real(0.0)),
-    );
+    let constant = l.select(middle, l.real(FRAC_PI_4), l.real(0.0));
+    let constant = l.select(large, l.real(FRAC_PI_2), constant);
     (constant + series).copysign(x)
 }
 
@@ -140,9 +137,7 @@ impl<L: DoubleLanes> Interval<L> {
 
     #[inline(always)]
     pub fn quotient_noted(self, other: Self, domain: &mut Domain<L>) -> Self {
-        let zero = self.lanes.real(0.0);
-        let nothing = other.low.same(zero) & other.high.same(zero);
-        domain.note(other.may_be_zero(), nothing);
+        domain.note(other.may_be_zero(), other.is_zero());
         self / other
     }
 
@@ -179,6 +174,13 @@ impl<L: DoubleLanes> Interval<L> {
         )
     }
 
+    /// Where an angle may be beyond [`LARGEST_ANGLE`].
+    #[inline(always)]
+    fn is_huge_angle(&self) -> L::Mask {
+        let largest = self.lanes.real(LARGEST_ANGLE);
+        !(self.low.ge(-largest) & self.high.le(largest))
+    }
+
     #[inline(always)]
     pub fn sine_cosine(self) -> (Self, Self) {
         let l = self.lanes;
@@ -200,7 +202,7 @@ impl<L: DoubleLanes> Interval<L> {
             let shift = l.real(shift);
             up(l, to - shift).floor().ge(down(l, from - shift))
         });
-        let huge = !(self.low.ge(l.real(-LARGEST_ANGLE)) & self.high.le(l.real(LARGEST_ANGLE)));
+        let huge = self.is_huge_angle();
         let bounded = inlined!(|(low, high): (L::Real, L::Real), top: f64, bottom: f64| {
             let low = l.select(huge | passes(bottom), -one, low);
             let high = l.select(huge | passes(top), one, high);
@@ -222,7 +224,7 @@ impl<L: DoubleLanes> Interval<L> {
         let radius = up(l, (middle - self.low).max(self.high - middle));
         let (s, c, k) = sine_kernel(l, middle);
         let slack = up(l, k.abs() * l.real(1.0 / (1u128 << 105) as f64) + radius);
-        let huge = !(self.low.ge(l.real(-LARGEST_ANGLE)) & self.high.le(l.real(LARGEST_ANGLE)));
+        let huge = self.is_huge_angle();
         let around = inlined!(|x: L::Real| {
             let low = down(l, lowered(l, x, WIDENING) - slack);
             let high = up(l, raised(l, x, WIDENING) + slack);
@@ -241,7 +243,7 @@ impl<L: DoubleLanes> Interval<L> {
         let half = l.real(0.5);
         let from = down(l, lowered(l, self.low * half_turns, WIDENING) - half);
         let to = up(l, raised(l, self.high * half_turns, WIDENING) - half);
-        let huge = !(self.low.ge(l.real(-LARGEST_ANGLE)) & self.high.le(l.real(LARGEST_ANGLE)));
+        let huge = self.is_huge_angle();
         let pole = huge | to.floor().ge(from);
         domain.note(pole, l.mask(false));
         let at = inlined!(|x: L::Real| {
@@ -320,17 +322,12 @@ impl<L: DoubleLanes> Interval<L> {
             let constant = l.select(y.lt(zero), -constant, constant);
             constant + angle
         });
-        let corners = [
-            corner(x.low, y.low),
-            corner(x.low, y.high),
-            corner(x.high, y.low),
-            corner(x.high, y.high),
-        ];
-        let Self { low, high, .. } = Self::around(l, corners, 2.0 * WIDENING);
+        let [a, b] = [corner(x.low, y.low), corner(x.low, y.high)];
+        let [c, d] = [corner(x.high, y.low), corner(x.high, y.high)];
+        let Self { low, high, .. } = Self::around(l, [a, b, c, d], 2.0 * WIDENING);
         let origin = x.may_be_zero() & y.may_be_zero();
         let cut = !x.low.ge(zero) & y.low.lt(zero) & !y.high.lt(zero);
-        let nothing = x.low.same(zero) & x.high.same(zero) & y.low.same(zero) & y.high.same(zero);
-        domain.note(origin | cut, nothing);
+        domain.note(origin | cut, x.is_zero() & y.is_zero());
         let pi = l.real(PI[1]);
         let anywhere = Self::new(l, -pi, pi);
         let angle = Self::new(l, low.max(-pi), high.min(pi));
@@ -376,11 +373,8 @@ impl<L: DoubleLanes> Interval<L> {
             // Beyond 20 tanh is within 1e-17 of 1; the clipping keeps the quotient finite.
             let twice = Self::point(l, x.abs().min(l.real(20.0)) * l.real(2.0));
             let far = unit - unit.times_number(2.0) / (twice.exponential() + unit);
-            let far = Self::new(
-                l,
-                far.low,
-                l.select(x.abs().gt(l.real(20.0)), one, far.high),
-            );
+            let far_high = l.select(x.abs().gt(l.real(20.0)), one, far.high);
+            let far = Self::new(l, far.low, far_high);
             let far = (-far).or_where_not(x.lt(l.real(0.0)), far);
             near.or_where_not(small, far)
         });
