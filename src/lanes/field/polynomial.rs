@@ -109,12 +109,9 @@ impl Polynomial {
     }
 
     pub fn plus(&self, other: &Self) -> Self {
-        let scale = |a: &Self, by: &BigInt| -> Vec<_> {
-            a.terms.iter().map(|(e, c)| (*e, c * by)).collect()
-        };
-        let mut terms = scale(self, &other.denominator);
-        terms.extend(scale(other, &self.denominator));
-        Self::new(terms, &self.denominator * &other.denominator)
+        let ours = self.terms.iter().map(|(e, c)| (*e, c * &other.denominator));
+        let theirs = other.terms.iter().map(|(e, c)| (*e, c * &self.denominator));
+        Self::new(ours.chain(theirs), &self.denominator * &other.denominator)
     }
 
     pub fn minus(&self, other: &Self) -> Self {
@@ -130,18 +127,12 @@ impl Polynomial {
     }
 
     pub fn times(&self, other: &Self) -> Self {
-        let mut products = BTreeMap::<Exponents, BigInt>::new();
-        for (e, a) in &self.terms {
-            for (f, b) in &other.terms {
-                let exponents = [e[0] + f[0], e[1] + f[1], e[2] + f[2]];
-                *products.entry(exponents).or_default() += a * b;
-            }
-        }
-        Self {
-            terms: products,
-            denominator: &self.denominator * &other.denominator,
-        }
-        .reduced()
+        let sum = |e: &Exponents, f: &Exponents| [e[0] + f[0], e[1] + f[1], e[2] + f[2]];
+        let products = self.terms.iter().flat_map(|(e, a)| {
+            let product = move |(f, b): (&Exponents, &BigInt)| (sum(e, f), a * b);
+            other.terms.iter().map(product)
+        });
+        Self::new(products, &self.denominator * &other.denominator)
     }
 }
 

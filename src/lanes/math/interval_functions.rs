@@ -8,7 +8,7 @@
 
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, LN_2, LOG2_E, SQRT_2};
 
-use super::functions::{self, COS, SIN, in_quadrant, polynomial};
+use super::functions::{self, ARCTAN, COS, SIN, in_quadrant, over_factorials, polynomial};
 use super::instructions::DoubleLanes;
 use super::interval::{Domain, Interval, down, lowered, raised, up};
 use super::lanes::{Mask, Real};
@@ -41,22 +41,7 @@ fn increasing<L: DoubleLanes>(l: L, low: L::Real, high: L::Real) -> Interval<L> 
 /// The power of two is applied in two halves, so that over- and underflow are rounded once.
 #[inline(always)]
 fn exp_kernel<L: DoubleLanes>(l: L, x: L::Real) -> L::Real {
-    const EXP: [f64; 14] = [
-        1.0,
-        1.0,
-        1.0 / 2.0,
-        1.0 / 6.0,
-        1.0 / 24.0,
-        1.0 / 120.0,
-        1.0 / 720.0,
-        1.0 / 5_040.0,
-        1.0 / 40_320.0,
-        1.0 / 362_880.0,
-        1.0 / 3_628_800.0,
-        1.0 / 39_916_800.0,
-        1.0 / 479_001_600.0,
-        1.0 / 6_227_020_800.0,
-    ];
+    const EXP: [f64; 14] = over_factorials(0, 1, 1.0);
     // e⁻⁷⁴⁶ rounds to 0 and e⁷¹⁰ to ∞, and the widening bounds what lies beyond.
     let x = x.max(l.real(-746.0)).min(l.real(710.0));
     let k = (x * l.real(LOG2_E)).round();
@@ -93,23 +78,13 @@ fn sine_kernel<L: DoubleLanes>(l: L, x: L::Real) -> (L::Real, L::Real, L::Real) 
 #[inline(always)]
 fn atan_kernel<L: DoubleLanes>(l: L, x: L::Real) -> L::Real {
     const TAN_PI_8: f64 = SQRT_2 - 1.0;
-    const ATAN: [f64; 21] = {
-        let mut series = [0.0; 21];
-        let mut k = 0;
-        while k < 21 {
-            let c = 1.0 / (2 * k + 1) as f64;
-            series[k] = if k % 2 == 0 { c } else { -c };
-            k += 1;
-        }
-        series
-    };
     let one = l.real(1.0);
     let a = x.abs();
     let (middle, large) = (a.gt(l.real(TAN_PI_8)), a.gt(l.real(SQRT_2 + 1.0)));
     let numerator = l.select(large, -one, l.select(middle, a - one, a));
     let denominator = l.select(large, a, l.select(middle, a + one, one));
     let z = numerator / denominator;
-    let series = polynomial(l, z * z, &ATAN) * z;
+    let series = polynomial(l, z * z, &ARCTAN) * z;
     let constant = l.select(middle, l.real(FRAC_PI_4), l.real(0.0));
     let constant = l.select(large, l.real(FRAC_PI_2), constant);
     (constant + series).copysign(x)
@@ -118,13 +93,8 @@ fn atan_kernel<L: DoubleLanes>(l: L, x: L::Real) -> L::Real {
 /// sinh x for |x| ≤ 1: the series to x¹⁷ leaves 1/19! = 0.08u; 2u by Horner.
 #[inline(always)]
 fn small_sinh_kernel<L: DoubleLanes>(l: L, x: L::Real) -> L::Real {
-    let mut series = SIN;
-    let mut i = 1;
-    while i < series.len() {
-        series[i] = series[i].abs();
-        i += 2;
-    }
-    polynomial(l, x * x, &series) * x
+    const SINH: [f64; 9] = over_factorials(1, 2, 1.0);
+    polynomial(l, x * x, &SINH) * x
 }
 
 impl<L: DoubleLanes> Interval<L> {
