@@ -36,6 +36,7 @@ mod oracle_support;
 mod phong_pictures;
 mod plan_bounds;
 mod plan_full;
+mod polynomial_support;
 mod references;
 mod render_goal;
 mod rooms;

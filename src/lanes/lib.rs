@@ -77,6 +77,17 @@ macro_rules! kinds {
                 }
             )*
         }
+
+/// Methods of one expression each, always inlined, as those of lanes must be.
+macro_rules! methods {
+    ($($(#[$attribute:meta])* $visibility:vis fn $method:ident $arguments:tt -> $result:ty = $value:expr;)*) => {
+        $(
+            $(#[$attribute])*
+            #[inline(always)]
+            $visibility fn $method $arguments -> $result {
+                $value
+            }
+        )*
     };
 }
 

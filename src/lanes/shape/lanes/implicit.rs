@@ -9,7 +9,7 @@ use std::cell::RefCell;
 
 use glam::DVec3;
 
-use crate::field::evaluate::Field;
+use crate::field::evaluate::{Field, Scratch, each};
 use crate::field::normal;
 use crate::math::affine::Affine;
 use crate::math::instructions::Instructions;
@@ -23,11 +23,10 @@ use crate::shape::implicit::certified::{Packet, WIDTH, Workspace};
 use crate::shape::implicit::placed::{Finder, ImplicitTally};
 
 use super::LaneRay;
-use crate::field::lanes::{LaneField, Scratch, each};
 
 #[derive(Debug, Clone)]
 pub struct LaneImplicit<T> {
-    field: LaneField<T>,
+    field: Field<T>,
     /// The field in f64 and the size of the box, for normals where the gradient vanishes.
     scalar: Field,
     size: f64,
@@ -86,7 +85,7 @@ impl<T: Scalar> LaneImplicit<T> {
         let row_sum = |row: &[f64; 4]| row[0].abs() + row[1].abs() + row[2].abs();
         let largest_row = inverse.rows.iter().map(row_sum).fold(0.0, f64::max);
         Ok(Self {
-            field: LaneField::new(&implicit.field.tape),
+            field: Field::new(&implicit.field.tape),
             scalar: Field::new(&implicit.field.tape),
             size: (inside[1] - inside[0]).max_element(),
             centre: centre.to_array().map(T::from_f64),
