@@ -9,7 +9,6 @@ use super::pool::each;
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::ray::Ray;
 use crate::math::vec3::Vec3;
-use crate::shape::implicit::placed::ImplicitTally;
 use crate::shape::lanes::implicit::{FieldQuestion, LaneImplicit, StartSign};
 use crate::shape::lanes::{Enclosure, LaneRay, Span};
 use crate::shape::resolve::{Departure, Doubt};
@@ -28,7 +27,7 @@ pub struct Rungs {
     /// Single questions that the ladder answered for those.
     pub ladder: Tally,
     /// Rays asked about implicit surfaces, each surface counted.
-    pub implicit: ImplicitTally,
+    pub implicit: Tally,
 }
 
 impl Rungs {
@@ -197,7 +196,7 @@ pub(super) struct FieldHits<L: Lanes> {
     /// Part; [`NOTHING`] at first.
     pub part: L::Int,
     /// What decided.
-    pub tally: ImplicitTally,
+    pub tally: Tally,
 }
 
 impl<L: Lanes> FieldHits<L> {
@@ -250,7 +249,7 @@ impl<L: Lanes> Search<L> {
             fields: FieldHits {
                 t: infinite,
                 part: l.int(NOTHING),
-                tally: ImplicitTally::default(),
+                tally: Tally::default(),
             },
         }
     }
@@ -393,7 +392,7 @@ pub(super) struct Blocks<'a, L: Lanes> {
     pub blocked: L::Mask,
     pub doubtful: L::Mask,
     /// What decided about the implicit surfaces that were asked on the way.
-    pub tally: ImplicitTally,
+    pub tally: Tally,
 }
 
 impl<'a, L: Lanes> Blocks<'a, L> {
@@ -405,7 +404,7 @@ impl<'a, L: Lanes> Blocks<'a, L> {
             rays: Rays { ray, leaving },
             blocked: l.mask(false),
             doubtful: l.mask(false),
-            tally: ImplicitTally::default(),
+            tally: Tally::default(),
         }
     }
 

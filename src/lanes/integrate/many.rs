@@ -10,8 +10,8 @@ use super::pool::{WIDEST, array, each, int_array};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
 use crate::math::vec3::Vec3;
 use crate::shape::ShapeKind;
+use crate::shape::Tally;
 use crate::shape::hierarchy::{BoxRay, Child, Descent, WIDTH};
-use crate::shape::implicit::placed::ImplicitTally;
 use crate::shape::lanes::balls::Balls;
 use crate::shape::lanes::implicit::{FieldQuestion, LaneImplicit};
 use crate::shape::lanes::{Enclosure, LaneRay};
@@ -146,7 +146,7 @@ impl<N: Lanes> Lone<N> {
         n: N,
         (object, implicit): (u32, &LaneImplicit<N::Scalar>),
         limit: N::Scalar,
-        tally: &mut ImplicitTally,
+        tally: &mut Tally,
     ) -> Option<N::Scalar> {
         n.vectorize(
             #[inline(always)]
@@ -173,7 +173,7 @@ struct Closest<T> {
     /// The closest hit on an implicit surface and its part.
     field: (T, u32),
     /// What decided about those.
-    tally: ImplicitTally,
+    tally: Tally,
 }
 
 impl<T: Scalar> Closest<T> {
@@ -422,7 +422,7 @@ fn block_along<N: Lanes>(
     model: &Model<N::Scalar>,
     lone: &Lone<N>,
     end: &End<N>,
-    (descent, tally): (&mut Descent<N::Scalar>, &mut ImplicitTally),
+    (descent, tally): (&mut Descent<N::Scalar>, &mut Tally),
 ) -> Block {
     let mut all = Block::Nothing;
     let Some(many) = &model.hierarchy else {

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use super::ladder::ScaledRay;
 use super::line::Crossing;
 use super::question::Limits;
-use super::{Hit, Placed, Ray, Rung, Start, Tally};
+use super::{Hit, Placed, Ray, Start, Tally, Tier};
 use crate::math::number::{Bounded, Number};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,15 +17,24 @@ pub struct Query {
     pub t_max: f64,
 }
 
-struct Candidate<'a> {
+impl Query {
+    /// The ray as the ladder takes it, with its limits; `None` where nothing can be met.
+    fn scaled(&self) -> Option<(ScaledRay, Limits)> {
+        let limits = Limits::new(self.t_min, self.t_max)?;
+        let valid = self.ray.is_valid();
+        valid.then(|| (ScaledRay::new(&self.ray), limits))
+    }
+}
+
+struct ObjectCrossing<'a> {
     index: usize,
     object: &'a Placed,
     crossing: Crossing,
-    rung: Rung,
+    tier: Tier,
     t: Bounded,
 }
 
-impl Candidate<'_> {
+impl ObjectCrossing<'_> {
     /// Whether this one comes first: by t, exactly if need be, then by priority, then by index.
     fn beats(
         &self,
@@ -35,12 +44,12 @@ impl Candidate<'_> {
         tally: &mut Tally,
     ) -> bool {
         let order = self.t.minus(&other.t).sign().unwrap_or_else(|| {
-            let (order, rung) = Placed::order(
+            let (order, tier) = Placed::order(
                 (self.object, &self.crossing),
                 (other.object, &other.crossing),
                 ray,
             );
-            tally.count(rung);
+            tally.count(Some(tier));
             order
         });
         order
@@ -50,43 +59,28 @@ impl Candidate<'_> {
     }
 }
 
-/// The closest hit over all objects, with its object's index. Equal t is recognised exactly; then
-/// the lower `priority` of the index wins, then the lower index. `start` says of each object what
-/// is known of the origin.
-pub fn nearest(
-    objects: &[Placed],
-    query: &Query,
-    start: impl Fn(usize) -> Start,
-    priority: impl Fn(usize) -> u8,
-    tally: &mut Tally,
-) -> Option<(usize, Hit)> {
-    nearest_of(objects.iter().enumerate(), query, start, priority, tally)
-}
-
-/// [`nearest`] over some objects with their indices.
-pub fn nearest_of<'a>(
+/// The closest hit over some objects with their indices, with its object's index. Equal t is
+/// recognised exactly; then the lower `priority` of the index wins, then the lower index. `start`
+/// says of each object what is known of the origin.
+pub fn nearest<'a>(
     objects: impl Iterator<Item = (usize, &'a Placed)>,
     query: &Query,
     start: impl Fn(usize) -> Start,
     priority: impl Fn(usize) -> u8,
     tally: &mut Tally,
 ) -> Option<(usize, Hit)> {
-    let limits = Limits::new(query.t_min, query.t_max)?;
-    if !query.ray.is_valid() {
-        return None;
-    }
-    let ray = ScaledRay::new(&query.ray);
-    let mut best: Option<Candidate<'_>> = None;
+    let (ray, limits) = query.scaled()?;
+    let mut best: Option<ObjectCrossing<'_>> = None;
     for (index, object) in objects {
         let found = object.first_crossing(&ray, &limits, start(index), tally);
-        let Some((crossing, rung)) = found else {
+        let Some((crossing, tier)) = found else {
             continue;
         };
-        let candidate = Candidate {
+        let candidate = ObjectCrossing {
             index,
             object,
             crossing,
-            rung,
+            tier,
             t: object.enclosure(&crossing, &ray),
         };
         let closer = best
@@ -97,38 +91,21 @@ pub fn nearest_of<'a>(
         }
     }
     let best = best?;
-    let hit = best.object.hit(&best.crossing, &ray, best.rung)?;
+    let hit = best.object.hit(&best.crossing, &ray, best.tier)?;
     Some((best.index, hit))
 }
 
-/// Whether any object has a crossing strictly between `t_min` and `t_max`.
-pub fn occluded(
-    objects: &[Placed],
-    query: &Query,
-    start: impl Fn(usize) -> Start,
-    tally: &mut Tally,
-) -> bool {
-    occluded_by(objects.iter().enumerate(), query, start, tally)
-}
-
-/// [`occluded`] by some objects with their indices.
-pub fn occluded_by<'a>(
+/// Whether any of some objects with their indices has a crossing strictly between `t_min` and `t_max`.
+pub fn occluded<'a>(
     mut objects: impl Iterator<Item = (usize, &'a Placed)>,
     query: &Query,
     start: impl Fn(usize) -> Start,
     tally: &mut Tally,
 ) -> bool {
-    let Some(limits) = Limits::new(query.t_min, query.t_max) else {
+    let Some((ray, mut limits)) = query.scaled() else {
         return false;
     };
-    if !query.ray.is_valid() {
-        return false;
-    }
-    let limits = Limits {
-        inclusive: false,
-        ..limits
-    };
-    let ray = ScaledRay::new(&query.ray);
+    limits.inclusive = false;
     objects.any(|(index, object)| {
         object
             .first_crossing(&ray, &limits, start(index), tally)

@@ -4,9 +4,9 @@ use std::cmp::Ordering;
 
 use super::ladder::{Ladder, ScaledRay};
 use super::line::{Crossing, LocalRay};
-use super::question::{First, Limits, Through};
-use super::value::{self, Values};
-use super::{Crossings, Hit, Ray, Rung, ShapeKind, Start, Tally};
+use super::question::{FirstCrossing, Limits};
+use super::value;
+use super::{Hit, Ray, ShapeKind, Start, Tally, Tier};
 use crate::math::affine::Affine;
 use crate::math::exact::Exact;
 use crate::math::number::{Bounded, Number};
@@ -57,23 +57,8 @@ impl Placed {
             return None;
         }
         let ray = ScaledRay::new(ray);
-        let (crossing, rung) = self.first_crossing(&ray, &limits, start, tally)?;
-        self.hit(&crossing, &ray, rung)
-    }
-
-    /// Both crossings of the whole line, at whatever t.
-    pub fn crossings(&self, ray: &Ray, tally: &mut Tally) -> Option<Crossings> {
-        if !ray.is_valid() {
-            return None;
-        }
-        let ray = ScaledRay::new(ray);
-        let (span, rung) = self.ladder.climb(&ray, &Through(self.kind))?;
-        tally.count(rung);
-        let span = span?;
-        Some(Crossings {
-            near: self.hit(&span.near, &ray, rung)?,
-            far: self.hit(&span.far, &ray, rung)?,
-        })
+        let (crossing, tier) = self.first_crossing(&ray, &limits, start, tally)?;
+        self.hit(&crossing, &ray, tier)
     }
 
     /// World → canonical coordinates, every entry computed in double-double and rounded once.
@@ -84,7 +69,7 @@ impl Placed {
         }
     }
 
-    /// The map between world and object, on each rung.
+    /// The map between world and object, on each tier.
     pub fn ladder(&self) -> &Ladder {
         &self.ladder
     }
@@ -95,7 +80,7 @@ impl Placed {
         limits: &Limits,
         start: Start,
         tally: &mut Tally,
-    ) -> Option<(Crossing, Rung)> {
+    ) -> Option<(Crossing, Tier)> {
         let met = match start {
             Start::Free => true,
             Start::OnSurfaceInward => !self.kind.is_flat(),
@@ -104,35 +89,23 @@ impl Placed {
         if !met {
             return None;
         }
-        let question = First {
+        let question = FirstCrossing {
             kind: self.kind,
             ray,
             limits,
             start,
         };
-        let (crossing, rung) = self.ladder.climb(ray, &question)?;
-        tally.count(rung);
-        Some((crossing?, rung))
+        let (crossing, tier) = self.ladder.climb(ray, &question)?;
+        tally.count(Some(tier));
+        Some((crossing?, tier))
     }
 
     /// t, point and normal of a decided crossing; double-double unless its own bound says that it
     /// is not sharp enough here.
-    pub(super) fn hit(&self, crossing: &Crossing, ray: &ScaledRay, rung: Rung) -> Option<Hit> {
-        let Values {
-            t,
-            point,
-            normal,
-            local,
-        } = value::values(crossing, &self.ladder.double_double, ray)
-            .or_else(|| value::values(crossing, &self.ladder.exact, ray))?;
-        (t.is_finite() && point.is_finite()).then_some(Hit {
-            t,
-            point,
-            normal,
-            local,
-            front: !crossing.leaving,
-            rung,
-        })
+    pub fn hit(&self, crossing: &Crossing, ray: &ScaledRay, tier: Tier) -> Option<Hit> {
+        let hit = value::hit(crossing, &self.ladder.double_double, ray, tier)
+            .or_else(|| value::hit(crossing, &self.ladder.exact, ray, tier))?;
+        (hit.t.is_finite() && hit.point.is_finite()).then_some(hit)
     }
 
     /// An enclosure of the crossing's t in f64, in units of the scaled direction.
@@ -145,17 +118,17 @@ impl Placed {
         (object, crossing): (&Self, &Crossing),
         (other, other_crossing): (&Self, &Crossing),
         ray: &ScaledRay,
-    ) -> (Ordering, Rung) {
+    ) -> (Ordering, Tier) {
         let mine = value::parameter(crossing, &object.ladder.double_double.local(ray));
         let theirs = value::parameter(other_crossing, &other.ladder.double_double.local(ray));
         if let Some(order) = mine.minus(&theirs).sign() {
-            return (order, Rung::DoubleDouble);
+            return (order, Tier::DoubleDouble);
         }
         let surd = |placed: &Self, crossing: &Crossing| {
             let line: LocalRay<Exact> = placed.ladder.exact.local(ray);
             super::surd::Surd::of(crossing, &line)
         };
         let order = surd(object, crossing).compare(&surd(other, other_crossing));
-        (order, Rung::Exact)
+        (order, Tier::Exact)
     }
 }

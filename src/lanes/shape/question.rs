@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::ladder::{Question, ScaledRay};
-use super::line::{Crossing, Fraction, LocalRay, Span};
+use super::line::{Crossing, Fraction, LocalRay};
 use super::{ShapeKind, Start};
 use crate::math::number::Number;
 
@@ -29,7 +29,7 @@ impl Limits {
 }
 
 /// Which crossing within the limits comes first?
-pub struct First<'a> {
+pub struct FirstCrossing<'a> {
     pub kind: ShapeKind,
     /// The ray in the world, for the units of t.
     pub ray: &'a ScaledRay,
@@ -37,7 +37,7 @@ pub struct First<'a> {
     pub start: Start,
 }
 
-impl Question for First<'_> {
+impl Question for FirstCrossing<'_> {
     type Answer = Option<Crossing>;
 
     fn ask<N: Number>(&self, ray: &LocalRay<N>) -> Option<Option<Crossing>> {
@@ -61,7 +61,7 @@ impl Question for First<'_> {
     }
 }
 
-impl First<'_> {
+impl FirstCrossing<'_> {
     fn before_end<N: Number>(
         &self,
         crossing: &Crossing,
@@ -73,16 +73,5 @@ impl First<'_> {
         let t_max = Fraction::whole(self.ray.scaled_t(t_max));
         let before = crossing.compare(ray, &t_max)? == Ordering::Less;
         Some(before.then_some(*crossing))
-    }
-}
-
-/// Where does the whole line enter and leave?
-pub struct Through(pub ShapeKind);
-
-impl Question for Through {
-    type Answer = Option<Span>;
-
-    fn ask<N: Number>(&self, ray: &LocalRay<N>) -> Option<Option<Span>> {
-        self.0.span(ray)
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::list::{Query, nearest_of, occluded_by};
+use super::list::{Query, nearest, occluded};
 use super::{Hit, Placed, Ray, Start, Tally};
 
 /// The certified shapes of a scene, by their index among all objects.
@@ -71,7 +71,7 @@ impl Resolver {
             t_min: 0.0,
             t_max: f64::INFINITY,
         };
-        let found = nearest_of(
+        let found = nearest(
             self.chosen(candidates),
             &query,
             |i| self.start(i, departure),
@@ -132,7 +132,7 @@ impl Resolver {
                 self.start(i, departure)
             }
         };
-        if occluded_by(self.chosen(candidates), &query, start, tally) {
+        if occluded(self.chosen(candidates), &query, start, tally) {
             return true;
         }
         // What is beyond the exit from one's own shape is hidden, also where that is not ahead.

@@ -14,9 +14,8 @@ use crate::math::double_double::DoubleDouble;
 use crate::math::number::{Number, power_of_two};
 use crate::root::sign_change::first_change;
 use crate::shape::implicit::Implicit;
-use crate::shape::implicit::certified::Tier;
 use crate::shape::ladder::{Ladder, ScaledRay};
-use crate::shape::{Query, Ray, SingularMatrix};
+use crate::shape::{Query, Ray, SingularMatrix, Tier};
 
 #[derive(Debug, Clone)]
 pub struct SteppingFinder {

@@ -11,18 +11,17 @@ mod exact;
 mod kernel;
 mod normal;
 mod place;
-mod stream;
 
 use glam::DVec3;
 
-pub use place::{Certified, Limits};
+pub use place::Certified;
 
 use crate::math::instructions::{DoubleLanes, Instructions, Job};
 use crate::math::number::{binary_exponent, power_of_two};
 use crate::math::packet::each;
 use crate::math::words::{Pair, Plain, Row};
 use crate::root::exact::ExactRoot;
-use crate::shape::Ray;
+use crate::shape::{Ray, Tier};
 use exact::ExactStart;
 
 /// Lanes of a packet.
@@ -83,14 +82,6 @@ impl Packet {
     }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
-pub enum Tier {
-    #[default]
-    Double,
-    DoubleDouble,
-    Exact,
-}
-
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Answers {
     pub found: u32,
@@ -116,7 +107,7 @@ pub struct Answers {
 pub const SHARP: f64 = 1e-12;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Wish {
+pub struct Effort {
     /// Enclosures that f64 leaves blurred are sharpened in double-double.
     pub sharp: bool,
     /// What double-double leaves undecided is decided exactly.
@@ -170,10 +161,15 @@ impl Job<f64> for Ask<'_> {
 
 impl Certified {
     /// The first hits of a packet, by the cheapest arithmetic that is certain of each.
-    pub fn first_hits(&self, packet: &Packet, wish: Wish, workspace: &mut Workspace) -> Answers {
+    pub fn first_hits(
+        &self,
+        packet: &Packet,
+        effort: Effort,
+        workspace: &mut Workspace,
+    ) -> Answers {
         let mut answers = self.in_lanes(packet, packet.active, false, workspace);
         let mut open = packet.active & !(answers.found | answers.absent);
-        let again = answers.unfinished(packet, wish);
+        let again = answers.unfinished(packet, effort);
         if again != 0 {
             let sharper = self.in_lanes(packet, again, true, workspace);
             let decided = sharper.found | sharper.absent;
@@ -183,7 +179,7 @@ impl Certified {
             }
             open &= !decided;
         }
-        if wish.exact {
+        if effort.exact {
             for lane in each(open) {
                 answers.tiers[lane] = Tier::Exact;
                 self.settle(packet, lane, &mut answers, workspace);
@@ -291,7 +287,7 @@ impl Certified {
         (0..3).all(|i| {
             let row = &self.inverse[0].rows[i];
             let x = row[0][0] * p.x + row[1][0] * p.y + row[2][0] * p.z + row[3][0];
-            x - self.clip.lower[i] > self.margin && self.clip.upper[i] - x > self.margin
+            x - self.clip[0][i] > self.margin && self.clip[1][i] - x > self.margin
         })
     }
 
@@ -322,28 +318,24 @@ impl Certified {
 }
 
 impl Answers {
+    /// Takes a lane of other answers, all but its tier.
     fn take(&mut self, from: &Self, lane: usize) {
-        self.take_from(from, lane, lane);
+        let bit = 1 << lane;
+        self.found = self.found & !bit | from.found & bit;
+        self.absent = self.absent & !bit | from.absent & bit;
+        self.t[lane] = from.t[lane];
+        self.low[lane] = from.low[lane];
+        self.high[lane] = from.high[lane];
+        self.multiplicity[lane] = from.multiplicity[lane];
+        self.doubt[lane] = from.doubt[lane];
+        self.stretch[lane] = from.stretch[lane];
     }
 
-    /// Takes lane `at` of other answers as lane `to`.
-    fn take_from(&mut self, from: &Self, at: usize, to: usize) {
-        let bit = |set: u32| (set >> at & 1) << to;
-        self.found = self.found & !(1 << to) | bit(from.found);
-        self.absent = self.absent & !(1 << to) | bit(from.absent);
-        self.t[to] = from.t[at];
-        self.low[to] = from.low[at];
-        self.high[to] = from.high[at];
-        self.multiplicity[to] = from.multiplicity[at];
-        self.doubt[to] = from.doubt[at];
-        self.stretch[to] = from.stretch[at];
-    }
-
-    /// Lanes that are to be asked again: undecided ones, and blurred ones if wished.
-    fn unfinished(&self, packet: &Packet, wish: Wish) -> u32 {
+    /// Lanes that are to be asked again: undecided ones, and blurred ones where sharp answers are asked for.
+    fn unfinished(&self, packet: &Packet, effort: Effort) -> u32 {
         let open = packet.active & !(self.found | self.absent);
         let blurred = self.blurred & self.found;
-        open | if wish.sharp { blurred } else { 0 }
+        open | if effort.sharp { blurred } else { 0 }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::certified::{Answers, Packet, Tier};
+use super::certified::{Answers, Packet};
 use super::enclosed::{EnclosedField, Method, Searching, WORK_BOUND};
 use crate::math::affine::Affine;
 use crate::math::double_double::DoubleDouble;
@@ -14,7 +14,7 @@ use crate::math::scalar_lane::One;
 use crate::root::Outcome;
 use crate::shape::implicit::Implicit;
 use crate::shape::ladder::{Ladder, ScaledRay};
-use crate::shape::{Ray, SingularMatrix};
+use crate::shape::{Ray, SingularMatrix, Tier};
 
 /// A field in the world with a finder that works with enclosures.
 #[derive(Debug, Clone)]

@@ -2,11 +2,11 @@
 
 pub use super::baseline::ImplicitHit;
 use super::baseline::SteppingFinder;
-use super::certified::{Answers, Certified, Packet, Tier, Wish, Workspace};
+use super::certified::{Answers, Certified, Effort, Packet, Workspace};
 use super::enclosed_packet::EnclosedPacket;
 use crate::math::affine::Affine;
 use crate::shape::implicit::{FinderChoice, Implicit};
-use crate::shape::{Query, Ray, SingularMatrix};
+use crate::shape::{Query, Ray, SingularMatrix, Tally};
 
 use glam::DVec3;
 
@@ -67,11 +67,11 @@ impl Finder {
         match self {
             Self::SignChange => None,
             Self::Polynomial { certified, exact } => {
-                let wish = Wish {
+                let effort = Effort {
                     sharp,
                     exact: *exact,
                 };
-                Some(certified.first_hits(packet, wish, workspace))
+                Some(certified.first_hits(packet, effort, workspace))
             }
             Self::Interval(enclosed) | Self::SphereTrace(enclosed) => {
                 Some(enclosed.first_hits(workspace.instructions, packet))
@@ -86,42 +86,6 @@ impl Finder {
             Self::Interval(_) => "interval",
             Self::SphereTrace(_) => "sphere-trace",
         }
-    }
-}
-
-/// How many rays each arithmetic has decided, over all implicit surfaces.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct ImplicitTally {
-    pub double: u64,
-    pub double_double: u64,
-    pub exact: u64,
-    pub undecided: u64,
-    /// Answered without proof.
-    pub uncertified: u64,
-}
-
-impl ImplicitTally {
-    pub fn count(&mut self, tier: Option<Tier>) {
-        match tier {
-            Some(Tier::Double) => self.double += 1,
-            Some(Tier::DoubleDouble) => self.double_double += 1,
-            Some(Tier::Exact) => self.exact += 1,
-            None => self.undecided += 1,
-        }
-    }
-
-    pub fn joined(self, other: Self) -> Self {
-        Self {
-            double: self.double + other.double,
-            double_double: self.double_double + other.double_double,
-            exact: self.exact + other.exact,
-            undecided: self.undecided + other.undecided,
-            uncertified: self.uncertified + other.uncertified,
-        }
-    }
-
-    pub fn rays(&self) -> u64 {
-        self.double + self.double_double + self.exact + self.undecided + self.uncertified
     }
 }
 
@@ -161,7 +125,7 @@ impl PlacedImplicit {
         &self,
         query: &Query,
         workspace: &mut Workspace,
-        tally: &mut ImplicitTally,
+        tally: &mut Tally,
     ) -> ImplicitAnswer {
         match self.first_crossing(query, workspace, tally) {
             ImplicitAnswer::Found(hit) if hit.tier.is_some() => {
@@ -179,7 +143,7 @@ impl PlacedImplicit {
         &self,
         query: &Query,
         workspace: &mut Workspace,
-        tally: &mut ImplicitTally,
+        tally: &mut Tally,
     ) -> ImplicitAnswer {
         if !query.ray.is_valid() {
             return ImplicitAnswer::Absent;

@@ -16,11 +16,11 @@ use crate::math::instructions::Instructions;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, WIDEST};
 use crate::math::packet::array;
 use crate::math::vec3::{Rows, Vec3};
-use crate::shape::SingularMatrix;
 use crate::shape::hierarchy::{Bounds, OuterBox};
 use crate::shape::implicit::Implicit;
 use crate::shape::implicit::certified::{Packet, WIDTH, Workspace};
-use crate::shape::implicit::placed::{Finder, ImplicitTally};
+use crate::shape::implicit::placed::Finder;
+use crate::shape::{SingularMatrix, Tally};
 
 use super::LaneRay;
 use crate::field::lanes::{LaneField, Scratch, each};
@@ -112,7 +112,7 @@ impl<T: Scalar> LaneImplicit<T> {
         &self,
         l: L,
         question: &FieldQuestion<'_, L>,
-        tally: &mut ImplicitTally,
+        tally: &mut Tally,
     ) -> (L::Real, L::Mask) {
         l.vectorize(inlined!(|| {
             let FieldQuestion {
@@ -305,7 +305,7 @@ impl<T: Scalar> PacketRays<T> {
         finder: &Finder,
         [active, leaving]: [u32; 2],
         count: usize,
-        tally: &mut ImplicitTally,
+        tally: &mut Tally,
     ) -> ([T; WIDEST], u32) {
         let mut t = [T::default(); WIDEST];
         let mut found = 0;

@@ -70,7 +70,7 @@ impl IntegerRay {
         for axis in 0..3 {
             let (o, d) = (&self.origin[axis], &self.direction[axis]);
             // Lower face ≤ (o + t d) / scale ≤ upper face.
-            let room = [placed.clip.lower[axis], placed.clip.upper[axis]].map(|face| {
+            let room = [placed.clip[0][axis], placed.clip[1][axis]].map(|face| {
                 let face = Point::of(face);
                 (
                     &face.numerator * &self.scale - o * &face.denominator,
