@@ -10,7 +10,7 @@ use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::ray::Ray;
 use crate::math::vec3::Vec3;
 use crate::shape::lanes::implicit::{FieldQuestion, LaneImplicit, StartSign};
-use crate::shape::lanes::{Enclosure, LaneRay, Span};
+use crate::shape::lanes::{Enclosure, LaneRay, LaneSpan};
 use crate::shape::resolve::{Departure, Doubt};
 use crate::shape::{ShapeKind, Tally};
 
@@ -143,7 +143,7 @@ impl<L: Lanes> Asked<L> {
     /// Those that the span does not rule out. A line along the wall of the shape that it goes into
     /// may pass outside of it, by the rounding of its start; the ray meets it all the same.
     #[inline(always)]
-    pub fn met(&self, span: &Span<L>) -> L::Mask {
+    pub fn met(&self, span: &LaneSpan<L>) -> L::Mask {
         (self.all & !span.miss) | self.inside
     }
 }
@@ -151,9 +151,9 @@ impl<L: Lanes> Asked<L> {
 /// Picks the crossing that counts: the first one ahead, or the exit for rays that go inward from
 /// this object's own surface.
 #[inline(always)]
-pub(super) fn candidate<L: Lanes>(l: L, span: &Span<L>, asked: &Asked<L>) -> Candidate<L> {
+pub(super) fn candidate<L: Lanes>(l: L, span: &LaneSpan<L>, asked: &Asked<L>) -> Candidate<L> {
     let zero = l.real(0.0);
-    let Span {
+    let LaneSpan {
         mut near, far, hit, ..
     } = *span;
     if asked.inside.any() {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::kind::{Canonical, Emitter, Length, Question};
 use super::lanes::part::{Part, PartKind};
-use super::lanes::{self, LaneRay, LaneShape};
+use super::lanes::{LaneRay, LaneShape, LaneSpan};
 use super::line::{LocalRay, Span};
 use super::slab::{Along, LaneSlab, Slab, coordinate, cut, lane_slab, reach, slab};
 use crate::math::lanes::{Lanes, Mask, Real, Scalar};
@@ -59,7 +59,7 @@ impl Canonical for Cube {
     /// Three slabs (Kay and Kajiya 1986), each crossing with its bound; the cube is hit for certain
     /// when the latest possible entry is before the earliest possible exit.
     #[inline(always)]
-    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
+    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> LaneSpan<L> {
         let Question {
             shape, ray, asked, ..
         } = *question;
@@ -108,11 +108,7 @@ fn slabs<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> [Lan
 /// The same where some line may run along a slab.
 #[cold]
 #[inline(never)]
-fn with_parallels<L: Lanes>(
-    l: L,
-    shape: &LaneShape<L::Scalar>,
-    ray: &LaneRay<L>,
-) -> lanes::Span<L> {
+fn with_parallels<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> LaneSpan<L> {
     l.vectorize(inlined!(|| {
         let mut slabs = slabs(l, shape, ray);
         let o = shape.inverse.point(l, ray.origin);
@@ -136,7 +132,7 @@ fn joined<L: Lanes>(
     [x, y, z]: &[LaneSlab<L>; 3],
     lost: L::Mask,
     outside: L::Mask,
-) -> lanes::Span<L> {
+) -> LaneSpan<L> {
     let near = x.near.later(y.near).later(z.near);
     let far = x.far.earlier(y.far).earlier(z.far);
     // One part a pair of faces.
@@ -154,7 +150,7 @@ fn joined<L: Lanes>(
             z.far.low.lt(x.far.low.min(y.far.low)),
         ),
     ];
-    lanes::Span {
+    LaneSpan {
         near,
         far,
         hit: near.high.lt(far.low) & !lost & !outside,

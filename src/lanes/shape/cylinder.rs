@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::kind::{Canonical, Emitter, Length, Question};
-use super::lanes::{self, LaneShape, LaneSurface};
+use super::lanes::{LaneShape, LaneSpan, LaneSurface};
 use super::line::{Crossing, Fraction, LocalRay, Span};
 use super::slab::{Along, Slab, coordinate, cut, lane_slab, reach, slab};
 use super::sphere::round_span;
@@ -55,7 +55,7 @@ impl Canonical for Cylinder {
     /// The side as a circle about the foot of the perpendicular in the plane (bounds as for the
     /// sphere, with √2 in place of √3), the caps as a slab.
     #[inline(always)]
-    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
+    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> LaneSpan<L> {
         let Question {
             shape, ray, asked, ..
         } = *question;
@@ -100,7 +100,7 @@ impl Canonical for Cylinder {
         }
         let near = side.near.later(caps.near);
         let far = side.far.earlier(caps.far);
-        lanes::Span {
+        LaneSpan {
             near,
             far,
             hit: side.hit & near.high.lt(far.low) & !along.lost & !along.outside,

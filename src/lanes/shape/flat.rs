@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::kind::{Canonical, Emitter, Length, Question};
 use super::lanes::part::{Part, PartKind};
-use super::lanes::{self, Enclosure, LaneShape};
+use super::lanes::{Enclosure, LaneShape, LaneSpan};
 use super::line::{Crossing, Feature, Fraction, LocalRay, Span};
 use crate::math::affine::Affine;
 use crate::math::lanes::{Lanes, Real, Scalar};
@@ -85,7 +85,7 @@ impl<F: Flat> Canonical for F {
     /// t = −o_z/d_z within 2 (E_z + |t| D_z)/|d_z| + 5u|t| (first order, doubled for the rest while
     /// D_z ≤ |d_z|/4, which [`margins`] sees to; 5u pay for the arithmetic up to the rounded ends).
     #[inline(always)]
-    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
+    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> LaneSpan<L> {
         let Question { shape, ray, .. } = *question;
         let u = <L::Scalar as Scalar>::ROUNDOFF;
         let row = inlined!(|i: usize| shape.inverse.row(l, i, ray.origin, ray.direction));
@@ -103,7 +103,7 @@ impl<F: Flat> Canonical for F {
         let e = distance.mul_add(z_error, shape.origin_error(l, ray, 2)) * l.real(2.0);
         let error = e.mul_add(reciprocal.abs(), distance * l.real(5.0 * u));
         let at = Enclosure::about(t, error);
-        lanes::Span {
+        LaneSpan {
             near: at,
             far: at,
             hit: inside,

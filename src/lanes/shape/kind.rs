@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::lanes::part::Part;
-use super::lanes::{self, LaneRay, LaneShape, LaneSurface};
+use super::lanes::{LaneRay, LaneShape, LaneSpan, LaneSurface};
 use super::line::{LocalRay, Span};
 use crate::math::lanes::{Lanes, Scalar};
 use crate::math::number::Number;
@@ -97,9 +97,9 @@ pub trait Canonical {
 
     /// The same in lanes, with bounds; lanes that these cannot decide are taken to the ladder. What is
     /// said of lanes that are not asked means nothing.
-    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L>;
+    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> LaneSpan<L>;
 
-    /// The parts, in the order in which [`lanes::Span`] numbers them.
+    /// The parts, in the order in which [`LaneSpan`] numbers them.
     fn parts<T: Scalar>(_shape: &LaneShape<T>) -> Vec<Part<T>> {
         vec![Part::other()]
     }
@@ -222,9 +222,9 @@ impl<T: Scalar> LaneShape<T> {
         ray: &LaneRay<L>,
         asked: L::Mask,
         limit: L::Real,
-    ) -> lanes::Span<L> {
+    ) -> LaneSpan<L> {
         let Some(kind) = self.kind else {
-            return lanes::Span::missed(l);
+            return LaneSpan::missed(l);
         };
         let question = Question {
             shape: self,
@@ -243,7 +243,7 @@ impl<T: Scalar> LaneShape<T> {
         ray: &LaneRay<L>,
         asked: L::Mask,
         limit: L::Real,
-    ) -> lanes::Span<L> {
+    ) -> LaneSpan<L> {
         l.vectorize(inlined!(|| self.span(l, ray, asked, limit)))
     }
 

@@ -87,7 +87,7 @@ impl<L: Lanes> Enclosure<L> {
 
 /// Where a line enters and leaves a convex shape, with bounds.
 #[derive(Clone, Copy)]
-pub struct Span<L: Lanes> {
+pub struct LaneSpan<L: Lanes> {
     /// Entry, where the line meets the shape.
     pub near: Enclosure<L>,
     /// Exit; that of flat shapes is the entry.
@@ -100,7 +100,7 @@ pub struct Span<L: Lanes> {
     pub parts: [L::Int; 2],
 }
 
-impl<L: Lanes> Span<L> {
+impl<L: Lanes> LaneSpan<L> {
     /// That of a line which certainly misses.
     #[inline(always)]
     pub fn missed(l: L) -> Self {
@@ -129,9 +129,9 @@ pub struct LaneShape<T> {
     /// 6u (|bᵢ| + 1).
     pub offset_error: [T; 3],
     /// Bounds of a flat shape's plane test, see [`flat::margins`].
-    pub(in crate::shape) margins: [T; 2],
+    pub margins: [T; 2],
     /// A sphere that is one in the world too.
-    pub(in crate::shape) ball: Option<Ball<T>>,
+    pub ball: Option<Ball<T>>,
 }
 
 impl<T: Scalar> LaneShape<T> {
@@ -156,12 +156,7 @@ impl<T: Scalar> LaneShape<T> {
 
     /// Eᵢ for a packet of rays.
     #[inline(always)]
-    pub(in crate::shape) fn origin_error<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        ray: &LaneRay<L>,
-        i: usize,
-    ) -> L::Real {
+    pub fn origin_error<L: Lanes<Scalar = T>>(&self, l: L, ray: &LaneRay<L>, i: usize) -> L::Real {
         ray.extent.mul_add(
             l.splat(self.direction_error[i]),
             l.splat(self.offset_error[i]),
@@ -170,7 +165,7 @@ impl<T: Scalar> LaneShape<T> {
 
     /// The largest Eᵢ and Dᵢ of the first `count` components.
     #[inline(always)]
-    pub(in crate::shape) fn largest_errors<L: Lanes<Scalar = T>>(
+    pub fn largest_errors<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         ray: &LaneRay<L>,

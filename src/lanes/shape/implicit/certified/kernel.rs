@@ -420,14 +420,15 @@ impl<L: DoubleLanes> Combined<L> {
         let low = self.low.max(clipped.near);
         let high = self.high.min(clipped.far);
         let mut sure = self.found & !self.undecided;
-        if let Some(cut) = &placed.cut {
+        if placed.is_cut {
             // The margin is wider than what rounding does to these points.
             for i in 0..3 {
                 let (o, d) = (local.origin[i].head(), local.direction[i].head());
                 let (a, b) = (d.mul_add(low, o), d.mul_add(high, o));
                 let slack = clipped.shift + l.real(placed.margin / 1024.0);
                 let (least, most) = (a.min(b) - slack, a.max(b) + slack);
-                sure = sure & least.gt(l.real(cut[0][i])) & most.lt(l.real(cut[1][i]));
+                sure =
+                    sure & least.gt(l.real(placed.cut[0][i])) & most.lt(l.real(placed.cut[1][i]));
             }
         }
         let absent = self.absent | (self.open & !self.found & !self.undecided);

@@ -61,7 +61,9 @@ pub struct Certified {
     /// Largest magnitude of a coordinate there.
     pub(super) farthest: f64,
     /// Faces beyond which a root would not count; infinite where the surface does not reach them.
-    pub(super) cut: Option<[[f64; 3]; 2]>,
+    pub(super) cut: [[f64; 3]; 2],
+    /// Whether there are such faces.
+    pub(super) is_cut: bool,
     /// Bound of the local ends' coordinates beyond the outer box.
     pub(super) margin: f64,
 }
@@ -123,7 +125,8 @@ impl Certified {
             clip: clip.map(|corner| corner.to_array()),
             outer: outer.map(|corner| corner.to_array()),
             farthest: farthest.max_element(),
-            cut: is_cut.then(|| cut.map(|corner| corner.to_array())),
+            cut: cut.map(|corner| corner.to_array()),
+            is_cut,
             margin,
         })
     }
