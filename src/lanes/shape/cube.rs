@@ -6,7 +6,7 @@ use super::kind::{Canonical, Emitter, Length, Question};
 use super::lanes::part::{Part, PartKind};
 use super::lanes::{LaneRay, LaneShape, LaneSpan};
 use super::line::{LocalRay, Span};
-use super::slab::{Along, LaneSlab, Slab, coordinate, cut, lane_slab, reach, slab};
+use super::slab::{LaneSlab, Slab, cut, reach, slab};
 use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::number::Number;
 use crate::math::vec3::Vec3;
@@ -98,11 +98,11 @@ impl Canonical for Cube {
 /// The three slabs of the lines in local coordinates.
 #[inline(always)]
 fn slabs<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> [LaneSlab<L>; 3] {
-    let axis = inlined!(|i| {
+    let slab = inlined!(|i| {
         let local = shape.inverse.row(l, i, ray.origin, ray.direction);
-        lane_slab(l, &coordinate(l, shape, ray, i, local))
+        LaneSlab::new(l, shape, ray, i, local)
     });
-    [axis(0), axis(1), axis(2)]
+    [slab(0), slab(1), slab(2)]
 }
 
 /// The same where some line may run along a slab.
@@ -111,16 +111,15 @@ fn slabs<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> [Lan
 fn with_parallels<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> LaneSpan<L> {
     l.vectorize(inlined!(|| {
         let mut slabs = slabs(l, shape, ray);
-        let o = shape.inverse.point(l, ray.origin);
-        let d = shape.inverse.vector(l, ray.direction);
+        let [x, y, z] = &slabs;
+        let o = Vec3::new(x.origin, y.origin, z.origin);
+        let d = Vec3::new(x.direction, y.direction, z.direction);
         let reach = reach(l, shape, ray, o, d);
         let (mut lost, mut outside) = (l.mask(false), l.mask(false));
-        let components = [(o.x, d.x), (o.y, d.y), (o.z, d.z)];
-        for (i, (slab, local)) in slabs.iter_mut().zip(components).enumerate() {
-            let coordinate = coordinate(l, shape, ray, i, local);
-            let along: Along<L> = slab.settle(l, &coordinate, reach);
-            lost = lost | along.lost;
-            outside = outside | along.outside;
+        for slab in &mut slabs {
+            let (is_lost, is_outside) = slab.settle(l, reach);
+            lost = lost | is_lost;
+            outside = outside | is_outside;
         }
         joined(l, &slabs, lost, outside)
     }))

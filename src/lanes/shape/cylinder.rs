@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::kind::{Canonical, Emitter, Length, Question};
 use super::lanes::{LaneShape, LaneSpan, LaneSurface};
 use super::line::{Crossing, Fraction, LocalRay, Span};
-use super::slab::{Along, Slab, coordinate, cut, lane_slab, reach, slab};
+use super::slab::{LaneSlab, Slab, cut, reach, slab};
 use super::sphere::round_span;
 use crate::math::lanes::{Lanes, Mask, Real};
 use crate::math::number::{Number, dot};
@@ -88,23 +88,18 @@ impl Canonical for Cylinder {
             side.miss = (side.miss & !parallel) | (parallel & outside);
         }
 
-        let height = coordinate(l, shape, ray, 2, (o.z, d.z));
-        let mut caps = lane_slab(l, &height);
-        let nowhere = l.mask(false);
-        let mut along = Along::<L> {
-            lost: nowhere,
-            outside: nowhere,
-        };
+        let mut caps = LaneSlab::new(l, shape, ray, 2, (o.z, d.z));
+        let (mut lost, mut outside) = (l.mask(false), l.mask(false));
         if (caps.parallel & asked).any() {
-            along = caps.settle(l, &height, reach(l, shape, ray, o, d));
+            (lost, outside) = caps.settle(l, reach(l, shape, ray, o, d));
         }
         let near = side.near.later(caps.near);
         let far = side.far.earlier(caps.far);
         LaneSpan {
             near,
             far,
-            hit: side.hit & near.high.lt(far.low) & !along.lost & !along.outside,
-            miss: side.miss | along.outside | (side.hit & near.low.gt(far.high) & !along.lost),
+            hit: side.hit & near.high.lt(far.low) & !lost & !outside,
+            miss: side.miss | outside | (side.hit & near.low.gt(far.high) & !lost),
             parts: [l.int(0); 2],
         }
     }

@@ -3,7 +3,7 @@
 pub use super::baseline::ImplicitHit;
 use super::baseline::SteppingFinder;
 use super::certified::{Answers, Certified, Effort, Packet, Workspace};
-use super::enclosed_packet::EnclosedPacket;
+use super::enclosed::{EnclosedPacket, Method};
 use crate::math::affine::Affine;
 use crate::shape::implicit::{FinderChoice, Implicit};
 use crate::shape::{Query, Ray, SingularMatrix, Tally};
@@ -19,9 +19,8 @@ pub enum Finder {
         /// Whether what double-double leaves undecided is decided exactly.
         exact: bool,
     },
-    Interval(Box<EnclosedPacket>),
-    /// Sphere tracing with a proved bound.
-    SphereTrace(Box<EnclosedPacket>),
+    /// Interval subdivision, or sphere tracing with a proved bound.
+    Enclosed(Box<EnclosedPacket>),
 }
 
 impl Finder {
@@ -31,29 +30,24 @@ impl Finder {
     /// # Errors
     /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
     pub fn new(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
+        let enclosed = |method| {
+            let placed = EnclosedPacket::new(implicit, to_world, method)?;
+            Ok(Self::Enclosed(Box::new(placed)))
+        };
         let exact = match implicit.finder {
             FinderChoice::Auto => true,
             FinderChoice::Polynomial => false,
             FinderChoice::SignChange => return Ok(Self::SignChange),
-            FinderChoice::Interval => return Self::interval(implicit, to_world),
-            FinderChoice::SphereTrace => {
-                let placed = EnclosedPacket::by_spheres(implicit, to_world)?;
-                return Ok(Self::SphereTrace(Box::new(placed)));
-            }
+            FinderChoice::Interval => return enclosed(Method::Subdivision),
+            FinderChoice::SphereTrace => return enclosed(Method::Spheres),
         };
-        let certified = Certified::new(&implicit.field.tape, implicit.inside, to_world)?;
-        match certified {
+        match Certified::new(&implicit.field.tape, implicit.inside, to_world)? {
             Some(certified) => Ok(Self::Polynomial {
                 certified: Box::new(certified),
                 exact,
             }),
-            None => Self::interval(implicit, to_world),
+            None => enclosed(Method::Subdivision),
         }
-    }
-
-    fn interval(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
-        let placed = EnclosedPacket::by_subdivision(implicit, to_world)?;
-        Ok(Self::Interval(Box::new(placed)))
     }
 
     /// The first hits of a packet; `None` from the finder that proves nothing. `sharp` asks for
@@ -73,9 +67,7 @@ impl Finder {
                 };
                 Some(certified.first_hits(packet, effort, workspace))
             }
-            Self::Interval(enclosed) | Self::SphereTrace(enclosed) => {
-                Some(enclosed.first_hits(workspace.instructions, packet))
-            }
+            Self::Enclosed(enclosed) => Some(enclosed.first_hits(workspace.instructions, packet)),
         }
     }
 
@@ -83,8 +75,10 @@ impl Finder {
         match self {
             Self::SignChange => "sign-change",
             Self::Polynomial { .. } => "polynomial",
-            Self::Interval(_) => "interval",
-            Self::SphereTrace(_) => "sphere-trace",
+            Self::Enclosed(enclosed) => match enclosed.method {
+                Method::Subdivision => "interval",
+                Method::Spheres => "sphere-trace",
+            },
         }
     }
 }
