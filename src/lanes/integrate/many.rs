@@ -250,7 +250,7 @@ pub(super) fn search<L: Lanes>(
             let mut tally = search.fields.tally;
             let n = l.narrow();
             let stored = Stored::new(l, rays, inverse);
-            let mut descent = Descent::new();
+            let mut descent = Descent::default();
             for i in each(met) {
                 let mut closest = Closest {
                     low: low[i],
@@ -366,7 +366,7 @@ pub(super) fn blocks<L: Lanes>(
             let stored = Stored::new(l, blocks.rays, inverse);
             let limits = array(l, shadow.limit);
             let excepted = int_array(l, shadow.except);
-            let mut descent = Descent::new();
+            let mut descent = Descent::default();
             let (mut blocked, mut doubtful) = (0, 0);
             for i in each(met) {
                 descent.restart();
@@ -481,7 +481,7 @@ pub(super) fn candidates<L: Lanes>(
     let inverse = rays.ray.direction.reciprocal(l);
     let lone = Stored::new(l, rays, inverse).lone(n, i);
     let before = |c: &Candidate<L::Narrow>| c.possible & c.at.low.le(n.splat(limit));
-    let mut descent = Descent::new();
+    let mut descent = Descent::default();
     descent.restart();
     let mut objects = many.broad.clone();
     while let Some(child) = many

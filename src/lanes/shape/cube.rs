@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::kind::{Canonical, Emitter, Length, Question};
-use super::lanes::part::{Part, PartKind};
+use super::kind::{Canonical, Emitter, LaneQuestion, Length};
+use super::lanes::part::Part;
 use super::lanes::{LaneRay, LaneShape, LaneSpan};
 use super::line::{LocalRay, Span};
 use super::slab::{LaneSlab, Slab, cut, reach, slab};
@@ -59,8 +59,8 @@ impl Canonical for Cube {
     /// Three slabs (Kay and Kajiya 1986), each crossing with its bound; the cube is hit for certain
     /// when the latest possible entry is before the earliest possible exit.
     #[inline(always)]
-    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> LaneSpan<L> {
-        let Question {
+    fn lane_span<L: Lanes>(l: L, question: &LaneQuestion<'_, L>) -> LaneSpan<L> {
+        let LaneQuestion {
             shape, ray, asked, ..
         } = *question;
         let slabs = slabs(l, shape, ray);
@@ -73,8 +73,7 @@ impl Canonical for Cube {
     }
 
     fn parts<T: Scalar>(shape: &LaneShape<T>) -> Vec<Part<T>> {
-        let faces = |axis| shape.plane(axis, PartKind::Faces);
-        [0, 1, 2].map(faces).to_vec()
+        shape.faces.to_vec()
     }
 
     /// The axis of the face.

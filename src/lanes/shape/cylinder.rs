@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::kind::{Canonical, Emitter, Length, Question};
+use super::kind::{Canonical, Emitter, LaneQuestion, Length};
 use super::lanes::{LaneShape, LaneSpan, LaneSurface};
 use super::line::{Crossing, Fraction, LocalRay, Span};
 use super::slab::{LaneSlab, Slab, cut, reach, slab};
@@ -55,8 +55,8 @@ impl Canonical for Cylinder {
     /// The side as a circle about the foot of the perpendicular in the plane (bounds as for the
     /// sphere, with √2 in place of √3), the caps as a slab.
     #[inline(always)]
-    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> LaneSpan<L> {
-        let Question {
+    fn lane_span<L: Lanes>(l: L, question: &LaneQuestion<'_, L>) -> LaneSpan<L> {
+        let LaneQuestion {
             shape, ray, asked, ..
         } = *question;
         let one = l.real(1.0);

@@ -61,7 +61,7 @@ impl Length {
 
 /// The lines that a shape is asked about in lanes.
 #[derive(Clone, Copy)]
-pub struct Question<'a, L: Lanes> {
+pub struct LaneQuestion<'a, L: Lanes> {
     pub shape: &'a LaneShape<L::Scalar>,
     pub ray: &'a LaneRay<L>,
     /// Lanes whose answer counts.
@@ -97,7 +97,7 @@ pub trait Canonical {
 
     /// The same in lanes, with bounds; lanes that these cannot decide are taken to the ladder. What is
     /// said of lanes that are not asked means nothing.
-    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> LaneSpan<L>;
+    fn lane_span<L: Lanes>(l: L, question: &LaneQuestion<'_, L>) -> LaneSpan<L>;
 
     /// The parts, in the order in which [`LaneSpan`] numbers them.
     fn parts<T: Scalar>(_shape: &LaneShape<T>) -> Vec<Part<T>> {
@@ -226,7 +226,7 @@ impl<T: Scalar> LaneShape<T> {
         let Some(kind) = self.kind else {
             return LaneSpan::missed(l);
         };
-        let question = Question {
+        let question = LaneQuestion {
             shape: self,
             ray,
             asked,

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::kind::{Canonical, Emitter, Length, Question};
+use super::kind::{Canonical, Emitter, LaneQuestion, Length};
 use super::lanes::part::{Part, PartKind};
 use super::lanes::{Enclosure, LaneRay, LaneShape, LaneSpan, LaneSurface};
 use super::line::{Crossing, LocalRay, Span};
@@ -42,8 +42,8 @@ impl Canonical for Sphere {
     }
 
     #[inline(always)]
-    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> LaneSpan<L> {
-        let Question {
+    fn lane_span<L: Lanes>(l: L, question: &LaneQuestion<'_, L>) -> LaneSpan<L> {
+        let LaneQuestion {
             shape,
             ray,
             asked,

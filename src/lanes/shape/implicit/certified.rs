@@ -283,7 +283,7 @@ impl Certified {
 
     /// Whether the point at t is in the clip box with room to spare.
     fn surely_inside(&self, ray: &Ray, t: f64) -> bool {
-        let p = ray.origin + ray.direction * t;
+        let p = ray.at(t);
         (0..3).all(|i| {
             let row = &self.inverse[0].rows[i];
             let x = row[0][0] * p.x + row[1][0] * p.y + row[2][0] * p.z + row[3][0];

@@ -83,8 +83,7 @@ impl<T: Scalar> LaneImplicit<T> {
         let inside = implicit.inside;
         let centre = (inside[0] + inside[1]) / 2.0;
         let half = (inside[1] - inside[0]) / 2.0;
-        let row_sum = |row: &[f64; 4]| row[0].abs() + row[1].abs() + row[2].abs();
-        let largest_row = inverse.rows.iter().map(row_sum).fold(0.0, f64::max);
+        let largest_row = inverse.abs().vector(DVec3::ONE).max_element();
         Ok(Self {
             field: LaneField::new(&implicit.field.tape),
             scalar: Field::new(&implicit.field.tape),
