@@ -75,7 +75,7 @@ impl<F: Flat> Canonical for F {
         let Some(crossing) = crossing(ray)? else {
             return Some(None);
         };
-        let covered = F::covers(ray, &crossing.fraction(ray)?)?;
+        let covered = F::covers(ray, &crossing.fraction(ray).ok()?)?;
         Some(covered.then_some(Span {
             near: crossing,
             far: crossing,

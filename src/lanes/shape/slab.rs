@@ -37,8 +37,8 @@ pub fn slab<N: Number>(ray: &LocalRay<N>, axis: usize) -> Option<Slab> {
 
 /// The part of a span that lies between the faces of a slab, if any.
 pub fn cut<N: Number>(ray: &LocalRay<N>, mut span: Span, faces: &Span) -> Option<Option<Span>> {
-    let enters = faces.near.fraction(ray)?;
-    let leaves = faces.far.fraction(ray)?;
+    let enters = faces.near.fraction(ray).ok()?;
+    let leaves = faces.far.fraction(ray).ok()?;
     if span.near.compare(ray, &leaves)? == Ordering::Greater
         || span.far.compare(ray, &enters)? == Ordering::Less
     {

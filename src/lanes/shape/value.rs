@@ -14,10 +14,9 @@ const SHARP: f64 = f64::EPSILON / 32.0;
 /// t of a crossing, in units of the scaled direction. A root is taken in the form without
 /// cancellation: (−b ± √disc) / a where the signs agree, else c / (−b ∓ √disc).
 pub fn parameter<N: Number>(crossing: &Crossing, ray: &LocalRay<N>) -> N {
-    let dimensions = match (crossing.fraction(ray), crossing.feature) {
-        (Some(t), _) => return t.numerator.divided_by(&t.denominator),
-        (None, Feature::Round { dimensions }) => dimensions,
-        (None, _) => return N::of(0.0),
+    let dimensions = match crossing.fraction(ray) {
+        Ok(t) => return t.numerator.divided_by(&t.denominator),
+        Err(dimensions) => dimensions,
     };
     let quadratic = ray.quadratic(dimensions);
     let root = quadratic.discriminant.square_root();
