@@ -143,7 +143,7 @@ impl Decided {
     where
         Q: Question<Answer: PartialEq + std::fmt::Debug>,
     {
-        let ladder = placed.ladder();
+        let ladder = &placed.ladder;
         let truth = question.ask(&ladder.exact.local(ray));
         assert!(truth.is_some(), "exact numbers must decide: {what}");
         let double = question.ask(&ladder.double.local(ray));

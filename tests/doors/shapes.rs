@@ -111,7 +111,7 @@ pub fn crossings(placed: &Placed, ray: &Ray) -> Option<[Hit; 2]> {
         return None;
     }
     let ray = ScaledRay::new(ray);
-    let (span, tier) = placed.ladder().climb(&ray, &Through(placed.kind()))?;
+    let (span, tier) = placed.ladder.climb(&ray, &Through(placed.kind()))?;
     let Span { near, far } = span?;
     Some([
         placed.hit(&near, &ray, tier)?,

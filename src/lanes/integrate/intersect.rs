@@ -11,7 +11,7 @@ use crate::math::ray::Ray;
 use crate::math::vec3::Vec3;
 use crate::shape::lanes::implicit::{FieldQuestion, LaneImplicit, StartSign};
 use crate::shape::lanes::{Enclosure, LaneRay, LaneSpan};
-use crate::shape::resolve::{Departure, Doubt};
+use crate::shape::resolve::{Departure, UndecidedRay};
 use crate::shape::{ShapeKind, Tally};
 
 /// Marks rays that hit or leave nothing.
@@ -73,8 +73,8 @@ pub(super) struct Rays<'a, L: Lanes> {
 impl<L: Lanes> Rays<'_, L> {
     /// Lane `i`, as the ladder is asked about it.
     #[inline(always)]
-    fn doubt<'c>(&self, l: L, i: usize, candidates: Option<&'c [u32]>) -> Doubt<'c> {
-        Doubt {
+    fn doubt<'c>(&self, l: L, i: usize, candidates: Option<&'c [u32]>) -> UndecidedRay<'c> {
+        UndecidedRay {
             candidates,
             ray: Ray {
                 origin: lane_vector(l, self.ray.origin, i),

@@ -28,10 +28,6 @@ impl Canonical for Cube {
     const FACES: &'static [(usize, &'static [f64])] =
         &[(0, &[-1.0, 1.0]), (1, &[-1.0, 1.0]), (2, &[-1.0, 1.0])];
 
-    fn corners() -> Option<[DVec3; 2]> {
-        Some([-DVec3::ONE, DVec3::ONE])
-    }
-
     fn half_range(along: DVec3) -> f64 {
         along.abs().element_sum()
     }

@@ -23,10 +23,6 @@ impl Canonical for Cylinder {
     const FACES: &'static [(usize, &'static [f64])] = &[(2, &[-1.0, 1.0])];
     const ROUND: Option<usize> = Some(2);
 
-    fn corners() -> Option<[DVec3; 2]> {
-        Some([-DVec3::ONE, DVec3::ONE])
-    }
-
     fn half_range(along: DVec3) -> f64 {
         along.truncate().length() + along.z.abs()
     }

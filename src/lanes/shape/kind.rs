@@ -87,7 +87,9 @@ pub trait Canonical {
     const ROUND: Option<usize> = None;
 
     /// Opposite corners of its box; `None` where it has no end.
-    fn corners() -> Option<[DVec3; 2]>;
+    fn corners() -> Option<[DVec3; 2]> {
+        Some([-DVec3::ONE, DVec3::ONE])
+    }
 
     /// Half the range of a · p over the shape, for a = `along`; the middle of the range is 0.
     fn half_range(along: DVec3) -> f64;

@@ -1,7 +1,5 @@
 //! Several objects: the closest hit, and whether anything is in the way.
 
-use std::cmp::Ordering;
-
 use super::ladder::ScaledRay;
 use super::line::Crossing;
 use super::question::Limits;
@@ -19,44 +17,20 @@ pub struct Query {
 
 impl Query {
     /// The ray as the ladder takes it, with its limits; `None` where nothing can be met.
-    fn scaled(&self) -> Option<(ScaledRay, Limits)> {
+    pub(super) fn scaled(&self) -> Option<(ScaledRay, Limits)> {
         let limits = Limits::new(self.t_min, self.t_max)?;
         let valid = self.ray.is_valid();
         valid.then(|| (ScaledRay::new(&self.ray), limits))
     }
 }
 
+/// The first crossing with an object.
 struct ObjectCrossing<'a> {
     index: usize,
     object: &'a Placed,
     crossing: Crossing,
     tier: Tier,
     t: Bounded,
-}
-
-impl ObjectCrossing<'_> {
-    /// Whether this one comes first: by t, exactly if need be, then by priority, then by index.
-    fn beats(
-        &self,
-        other: &Self,
-        ray: &ScaledRay,
-        priority: &impl Fn(usize) -> u8,
-        tally: &mut Tally,
-    ) -> bool {
-        let order = self.t.minus(&other.t).sign().unwrap_or_else(|| {
-            let (order, tier) = Placed::order(
-                (self.object, &self.crossing),
-                (other.object, &other.crossing),
-                ray,
-            );
-            tally.count(Some(tier));
-            order
-        });
-        order
-            .then_with(|| priority(self.index).cmp(&priority(other.index)))
-            .then_with(|| self.index.cmp(&other.index))
-            == Ordering::Less
-    }
 }
 
 /// The closest hit over some objects with their indices, with its object's index. Equal t is
@@ -70,24 +44,33 @@ pub fn nearest<'a>(
     tally: &mut Tally,
 ) -> Option<(usize, Hit)> {
     let (ray, limits) = query.scaled()?;
+    let rank = |index| (priority(index), index);
     let mut best: Option<ObjectCrossing<'_>> = None;
     for (index, object) in objects {
         let found = object.first_crossing(&ray, &limits, start(index), tally);
         let Some((crossing, tier)) = found else {
             continue;
         };
-        let candidate = ObjectCrossing {
-            index,
-            object,
-            crossing,
-            tier,
-            t: object.enclosure(&crossing, &ray),
-        };
-        let closer = best
-            .as_ref()
-            .is_none_or(|best| candidate.beats(best, &ray, &priority, tally));
-        if closer {
-            best = Some(candidate);
+        let t = object.enclosure(&crossing, &ray);
+        let is_first = best.as_ref().is_none_or(|best| {
+            let order = t.minus(&best.t).sign().unwrap_or_else(|| {
+                let crossings = [(object, &crossing), (best.object, &best.crossing)];
+                let (order, tier) = Placed::order(crossings, &ray);
+                tally.count(Some(tier));
+                order
+            });
+            order
+                .then_with(|| rank(index).cmp(&rank(best.index)))
+                .is_lt()
+        });
+        if is_first {
+            best = Some(ObjectCrossing {
+                index,
+                object,
+                crossing,
+                tier,
+                t,
+            });
         }
     }
     let best = best?;
@@ -107,8 +90,7 @@ pub fn occluded<'a>(
     };
     limits.inclusive = false;
     objects.any(|(index, object)| {
-        object
-            .first_crossing(&ray, &limits, start(index), tally)
-            .is_some()
+        let crossing = object.first_crossing(&ray, &limits, start(index), tally);
+        crossing.is_some()
     })
 }

@@ -3,12 +3,12 @@
 use std::cmp::Ordering;
 
 use super::ladder::{Ladder, ScaledRay};
-use super::line::{Crossing, LocalRay};
+use super::line::Crossing;
 use super::question::{FirstCrossing, Limits};
+use super::surd::Surd;
 use super::value;
-use super::{Hit, Ray, ShapeKind, Start, Tally, Tier};
+use super::{Hit, Query, Ray, ShapeKind, Start, Tally, Tier};
 use crate::math::affine::Affine;
-use crate::math::exact::Exact;
 use crate::math::number::{Bounded, Number};
 
 /// The matrix maps space onto a plane or less (or has entries that are not finite).
@@ -22,7 +22,8 @@ pub struct SingularMatrix;
 pub struct Placed {
     kind: ShapeKind,
     to_world: Affine,
-    ladder: Ladder,
+    /// The map between world and object in each arithmetic.
+    pub ladder: Ladder,
 }
 
 impl Placed {
@@ -52,11 +53,12 @@ impl Placed {
     /// A line that only touches a closed set hits it, except that flat shapes are missed by lines
     /// in their own plane.
     pub fn first_hit(&self, ray: &Ray, t_min: f64, start: Start, tally: &mut Tally) -> Option<Hit> {
-        let limits = Limits::new(t_min, f64::INFINITY)?;
-        if !ray.is_valid() {
-            return None;
-        }
-        let ray = ScaledRay::new(ray);
+        let query = Query {
+            ray: *ray,
+            t_min,
+            t_max: f64::INFINITY,
+        };
+        let (ray, limits) = query.scaled()?;
         let (crossing, tier) = self.first_crossing(&ray, &limits, start, tally)?;
         self.hit(&crossing, &ray, tier)
     }
@@ -67,11 +69,6 @@ impl Placed {
         Affine {
             rows: entries.map(|row| row.map(|entry| entry.to_f64())),
         }
-    }
-
-    /// The map between world and object, on each tier.
-    pub fn ladder(&self) -> &Ladder {
-        &self.ladder
     }
 
     pub(super) fn first_crossing(
@@ -114,21 +111,15 @@ impl Placed {
     }
 
     /// Which of two crossings on the same ray comes first, by sharper numbers than f64.
-    pub(super) fn order(
-        (object, crossing): (&Self, &Crossing),
-        (other, other_crossing): (&Self, &Crossing),
-        ray: &ScaledRay,
-    ) -> (Ordering, Tier) {
-        let mine = value::parameter(crossing, &object.ladder.double_double.local(ray));
-        let theirs = value::parameter(other_crossing, &other.ladder.double_double.local(ray));
-        if let Some(order) = mine.minus(&theirs).sign() {
+    pub(super) fn order(crossings: [(&Self, &Crossing); 2], ray: &ScaledRay) -> (Ordering, Tier) {
+        let [a, b] = crossings.map(|(object, crossing)| {
+            value::parameter(crossing, &object.ladder.double_double.local(ray))
+        });
+        if let Some(order) = a.minus(&b).sign() {
             return (order, Tier::DoubleDouble);
         }
-        let surd = |placed: &Self, crossing: &Crossing| {
-            let line: LocalRay<Exact> = placed.ladder.exact.local(ray);
-            super::surd::Surd::of(crossing, &line)
-        };
-        let order = surd(object, crossing).compare(&surd(other, other_crossing));
-        (order, Tier::Exact)
+        let [a, b] =
+            crossings.map(|(object, crossing)| Surd::of(crossing, &object.ladder.exact.local(ray)));
+        (a.compare(&b), Tier::Exact)
     }
 }

@@ -23,10 +23,6 @@ impl Canonical for Sphere {
     const EMITTER: Emitter = Emitter::Sphere;
     const ROUND: Option<usize> = Some(3);
 
-    fn corners() -> Option<[DVec3; 2]> {
-        Some([-DVec3::ONE, DVec3::ONE])
-    }
-
     fn half_range(along: DVec3) -> f64 {
         along.length()
     }

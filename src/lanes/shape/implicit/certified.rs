@@ -169,7 +169,12 @@ impl Certified {
     ) -> Answers {
         let mut answers = self.in_lanes(packet, packet.active, false, workspace);
         let mut open = packet.active & !(answers.found | answers.absent);
-        let again = answers.unfinished(packet, effort);
+        let blurred = if effort.sharp {
+            answers.blurred & answers.found
+        } else {
+            0
+        };
+        let again = open | blurred;
         if again != 0 {
             let sharper = self.in_lanes(packet, again, true, workspace);
             let decided = sharper.found | sharper.absent;
@@ -182,7 +187,9 @@ impl Certified {
         if effort.exact {
             for lane in each(open) {
                 answers.tiers[lane] = Tier::Exact;
-                self.settle(packet, lane, &mut answers, workspace);
+                if !self.multiple_root(packet, lane, &mut answers, workspace) {
+                    self.decide(packet, lane, &mut answers);
+                }
             }
         }
         answers
@@ -191,20 +198,6 @@ impl Certified {
     /// The first hit of a ray by exact arithmetic alone, as the truth that others are judged by.
     pub fn exactly(&self, ray: &Ray, limits: [f64; 2]) -> Option<ExactRoot> {
         exact::first_hit(self, ray, limits, ExactStart::Free, f64::NAN)
-    }
-
-    /// A lane that double-double leaves undecided.
-    #[cold]
-    fn settle(
-        &self,
-        packet: &Packet,
-        lane: usize,
-        answers: &mut Answers,
-        workspace: &mut Workspace,
-    ) {
-        if !self.multiple_root(packet, lane, answers, workspace) {
-            self.decide(packet, lane, answers);
-        }
     }
 
     fn in_lanes(
@@ -329,13 +322,6 @@ impl Answers {
         self.multiplicity[lane] = from.multiplicity[lane];
         self.doubt[lane] = from.doubt[lane];
         self.stretch[lane] = from.stretch[lane];
-    }
-
-    /// Lanes that are to be asked again: undecided ones, and blurred ones where sharp answers are asked for.
-    fn unfinished(&self, packet: &Packet, effort: Effort) -> u32 {
-        let open = packet.active & !(self.found | self.absent);
-        let blurred = self.blurred & self.found;
-        open | if effort.sharp { blurred } else { 0 }
     }
 }
 

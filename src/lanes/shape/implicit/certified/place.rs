@@ -96,15 +96,7 @@ impl Certified {
         } else {
             Vec::new()
         };
-        Self::place(programs, clip, whole.unwrap_or(clip), to_world).map(Some)
-    }
-
-    fn place(
-        factors: Vec<(Program, u32)>,
-        clip: [DVec3; 2],
-        outer: [DVec3; 2],
-        to_world: &Affine,
-    ) -> Result<Self, SingularMatrix> {
+        let outer = whole.unwrap_or(clip);
         let margin = MARGIN * ((outer[1] - outer[0]) / 2.0).max_element().max(0.0);
         let farthest = outer[0].abs().max(outer[1].abs());
         let reach = (farthest + margin).to_array();
@@ -114,11 +106,11 @@ impl Certified {
         });
         let is_cut = cut.iter().any(|corner| corner.is_finite_mask().any());
         let ladder = Ladder::new(to_world)?;
-        let factors = factors
+        let factors = programs
             .into_iter()
             .map(|(program, power)| FactorField::new(program, power, reach))
             .collect();
-        Ok(Self {
+        Ok(Some(Self {
             factors,
             inverse: [Inverse::plain(&ladder), Inverse::pair(&ladder)],
             ladder,
@@ -128,7 +120,7 @@ impl Certified {
             cut: cut.map(|corner| corner.to_array()),
             is_cut,
             margin,
-        })
+        }))
     }
 
     /// Largest number of coefficients of a factor's forms.
