@@ -219,7 +219,7 @@ pub use render::session::{Mean, Progress, Rendered};
 pub use render::tile::{Outside, Window};
 pub use render::trace::{First, FirstHit, Found, Singular, Tracer};
 pub use scene::{Diagnostic, Origin, Overrides, Scene, SceneError};
-pub use shape::implicit::certified::Tier;
+pub use shape::Tier;
 pub use stats::Estimate;
 
 /// The rooms, for this repository's own tests, benchmarks and command line. Nothing is promised of

@@ -11,8 +11,8 @@ use etalon::inside::field::normal::outward;
 use etalon::inside::math::affine::Affine;
 use etalon::inside::scene::{FinderChoice, Implicit};
 use etalon::inside::shape::implicit::certified::Workspace;
-use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
-use etalon::inside::shape::{Query, Ray};
+use etalon::inside::shape::implicit::placed::{ImplicitAnswer, PlacedImplicit};
+use etalon::inside::shape::{Query, Ray, Tally};
 use etalon_doors::fields::values_and_gradients;
 use glam::DVec3;
 use num_bigint::BigInt;
@@ -321,7 +321,7 @@ fn closed_surfaces_have_caps() {
             t_min: 0.0,
             t_max: f64::INFINITY,
         };
-        let (mut workspace, mut tally) = (Workspace::default(), ImplicitTally::default());
+        let (mut workspace, mut tally) = (Workspace::default(), Tally::default());
         match placed.first_hit(&query, &mut workspace, &mut tally) {
             ImplicitAnswer::Found(hit) => Some((hit.t, hit.normal)),
             ImplicitAnswer::Absent => None,

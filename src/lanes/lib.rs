@@ -77,6 +77,8 @@ macro_rules! kinds {
                 }
             )*
         }
+    };
+}
 
 /// Methods of one expression each, always inlined, as those of lanes must be.
 macro_rules! methods {

@@ -6,11 +6,11 @@ use std::borrow::Cow;
 use crate::math::instructions::Instructions;
 use crate::scene::{Named, Object, Scene, Shape};
 use crate::shape::hierarchy::Bounds;
-use crate::shape::implicit::certified::{Tier, Workspace};
-use crate::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
+use crate::shape::implicit::certified::Workspace;
+use crate::shape::implicit::placed::{ImplicitAnswer, PlacedImplicit};
 use crate::shape::index::RayIndex;
-use crate::shape::list::nearest_of;
-use crate::shape::{Placed, Query, Ray, Start, Tally};
+use crate::shape::list::nearest;
+use crate::shape::{Placed, Query, Ray, Start, Tally, Tier};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -87,12 +87,12 @@ pub struct Decided {
     pub rays: u64,
     /// Rays that hit something.
     pub hits: u64,
-    /// Certified shapes, by rung.
+    /// Certified shapes, by tier.
     pub ladder: Tally,
     /// Rays that stay undecided.
     pub undecided: u64,
     /// Implicit surfaces, by arithmetic.
-    pub implicit: ImplicitTally,
+    pub implicit: Tally,
 }
 
 impl Decided {
@@ -234,7 +234,7 @@ impl Tracer {
         });
         let start = |_| Start::Free;
         let priority = |object: usize| self.priorities[object];
-        let (object, hit) = nearest_of(canonical, query, start, priority, tally)?;
+        let (object, hit) = nearest(canonical, query, start, priority, tally)?;
         Some(FirstHit {
             object,
             t: hit.t,

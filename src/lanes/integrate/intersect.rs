@@ -10,10 +10,9 @@ use super::pool::each;
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::ray::Ray;
 use crate::math::vec3::Vec3;
-use crate::shape::implicit::placed::ImplicitTally;
 use crate::shape::lanes::implicit::{FieldQuestion, LaneImplicit, StartSign};
-use crate::shape::lanes::{Enclosure, LaneRay, Span};
-use crate::shape::resolve::{Departure, Doubt};
+use crate::shape::lanes::{Enclosure, LaneRay, LaneSpan};
+use crate::shape::resolve::{Departure, UndecidedRay};
 use crate::shape::{ShapeKind, Tally};
 
 /// Marks rays that hit or leave nothing.
@@ -28,7 +27,7 @@ pub struct Rungs {
     /// Single questions that the ladder answered for those.
     pub ladder: Tally,
     /// Rays asked about implicit surfaces, each surface counted.
-    pub implicit: ImplicitTally,
+    pub implicit: Tally,
 }
 
 impl Rungs {
@@ -112,14 +111,14 @@ impl<L: Lanes> Asked<L> {
     /// Those that the span does not rule out. A line along the wall of the shape that it goes into
     /// may pass outside of it, by the rounding of its start; the ray meets it all the same.
     #[inline(always)]
-    pub fn met(&self, span: &Span<L>) -> L::Mask {
+    pub fn met(&self, span: &LaneSpan<L>) -> L::Mask {
         (self.all & !span.miss) | self.inside
     }
 
     /// Picks the crossing that counts: the first one ahead, or the exit for rays that go inward from
     /// this object's own surface.
     #[inline(always)]
-    pub fn candidate(&self, l: L, span: &Span<L>) -> Candidate<L> {
+    pub fn candidate(&self, l: L, span: &LaneSpan<L>) -> Candidate<L> {
         let zero = l.real(0.0);
         let (mut near, far) = (span.near, span.far);
         if self.inside.any() {
@@ -205,7 +204,7 @@ impl<L: Lanes> Query<'_, L> {
         (object, implicit): (u32, &LaneImplicit<L::Scalar>),
         active: L::Mask,
         limit: L::Real,
-        tally: &mut ImplicitTally,
+        tally: &mut Tally,
     ) -> (L::Real, L::Mask) {
         let (l, rays) = (self.l, self.rays);
         let question = FieldQuestion {
@@ -228,14 +227,14 @@ impl<L: Lanes> Query<'_, L> {
         unsure: L::Mask,
         limit: L::Real,
         rungs: &mut Rungs,
-        mut decide: impl FnMut(usize, &Doubt<'_>, &mut Tally),
+        mut decide: impl FnMut(usize, &UndecidedRay<'_>, &mut Tally),
     ) {
         let (l, rays) = (self.l, self.rays);
         rungs.rays += u64::from(self.active.bits().count_ones());
         rungs.undecided += u64::from(unsure.bits().count_ones());
         for i in each(unsure.bits()) {
             let candidates = candidates(self, i, l.lane(limit, i));
-            let doubt = Doubt {
+            let doubt = UndecidedRay {
                 candidates: candidates.as_deref(),
                 ray: Ray {
                     origin: lane_vector(l, rays.ray.origin, i),
@@ -298,7 +297,7 @@ impl<L: Lanes> Query<'_, L> {
 
     /// Asks any object, by calls.
     #[inline(always)]
-    pub fn ask_any(&self, search: &mut Searches<L>, k: u32, tally: &mut ImplicitTally) {
+    pub fn ask_any(&self, search: &mut Searches<L>, k: u32, tally: &mut Tally) {
         if let Some(implicit) = self.model.implicit(k) {
             self.ask_field(search, (k, implicit), tally);
         } else if let Some(candidate) = self.cross_alone(k, self.active, search.high) {
@@ -312,7 +311,7 @@ impl<L: Lanes> Query<'_, L> {
         &self,
         search: &mut Searches<L>,
         field: (u32, &LaneImplicit<L::Scalar>),
-        tally: &mut ImplicitTally,
+        tally: &mut Tally,
     ) {
         let l = self.l;
         let (t, found) = self.hit_field(field, self.active, search.field_t, tally);
@@ -427,7 +426,7 @@ impl<L: Lanes> Blocks<L> {
 
     /// Asks any object, by calls.
     #[inline(always)]
-    pub fn ask_any(&mut self, query: &Query<'_, L>, k: u32, tally: &mut ImplicitTally) {
+    pub fn ask_any(&mut self, query: &Query<'_, L>, k: u32, tally: &mut Tally) {
         let asked = self.counted(query.active, query.l.int(k));
         if let Some(implicit) = query.model.implicit(k) {
             self.ask_field(query, (k, implicit), tally);
@@ -442,7 +441,7 @@ impl<L: Lanes> Blocks<L> {
         &mut self,
         query: &Query<'_, L>,
         field: (u32, &LaneImplicit<L::Scalar>),
-        tally: &mut ImplicitTally,
+        tally: &mut Tally,
     ) {
         let asked = self.counted(query.active & !self.blocked, query.l.int(field.0));
         let (_, found) = query.hit_field(field, asked, self.limit, tally);

@@ -10,8 +10,8 @@ use super::pool::{WIDEST, array, each, int_array};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 use crate::shape::ShapeKind;
+use crate::shape::Tally;
 use crate::shape::hierarchy::{BoxRay, Child, Descent, WIDTH};
-use crate::shape::implicit::placed::ImplicitTally;
 use crate::shape::lanes::LaneRay;
 use crate::shape::lanes::balls::Balls;
 
@@ -174,7 +174,7 @@ impl<T: Scalar> Search<T, u32> {
 pub(super) fn search<L: Lanes>(
     query: &Query<'_, L>,
     many: &Many<L::Scalar>,
-    tally: &mut ImplicitTally,
+    tally: &mut Tally,
 ) -> Searches<L> {
     let l = query.l;
     l.vectorize(inlined!(|| {
@@ -195,7 +195,7 @@ pub(super) fn search<L: Lanes>(
         );
         let n = l.narrow();
         let stored = Stored::new(l, query.rays, inverse);
-        let mut descent = Descent::new();
+        let mut descent = Descent::default();
         for i in each(met.bits()) {
             let (rays, boxes) = stored.alone(n, i);
             let query = query.of_one(n, &rays);
@@ -218,7 +218,7 @@ fn search_along<N: Lanes>(
     many: &Many<N::Scalar>,
     (boxes, descent): (&BoxRay<N>, &mut Descent<N::Scalar>),
     closest: &mut Search<N::Scalar, u32>,
-    tally: &mut ImplicitTally,
+    tally: &mut Tally,
 ) {
     let (n, model) = (query.l, query.model);
     let first = |object: u32| model.parts.first[object as usize];
@@ -256,7 +256,7 @@ pub(super) fn blocks<L: Lanes>(
     query: &Query<'_, L>,
     many: &Many<L::Scalar>,
     blocks: &mut Blocks<L>,
-    tally: &mut ImplicitTally,
+    tally: &mut Tally,
 ) {
     let l = query.l;
     l.vectorize(inlined!(|| {
@@ -273,7 +273,7 @@ pub(super) fn blocks<L: Lanes>(
         let n = l.narrow();
         let stored = Stored::new(l, query.rays, inverse);
         let (limits, excepted) = (array(l, blocks.limit), int_array(l, blocks.except));
-        let mut descent = Descent::new();
+        let mut descent = Descent::default();
         let (mut blocked, mut doubtful) = (0, 0);
         for i in each(met.bits()) {
             let (rays, boxes) = stored.alone(n, i);
@@ -297,7 +297,7 @@ fn block_along<N: Lanes>(
     many: &Many<N::Scalar>,
     (boxes, descent, limit): (&BoxRay<N>, &mut Descent<N::Scalar>, N::Scalar),
     blocks: &mut Blocks<N>,
-    tally: &mut ImplicitTally,
+    tally: &mut Tally,
 ) {
     let n = query.l;
     while let Some(child) = many.boxes.next::<N, false>(n, descent, boxes, limit) {
@@ -334,7 +334,7 @@ pub(super) fn candidates<L: Lanes>(
     let query = query.of_one(n, &rays);
     let end = n.splat(limit);
     let before = |c: &Candidate<L::Narrow>| (c.possible & c.at.low.le(end)).bits();
-    let mut descent = Descent::new();
+    let mut descent = Descent::default();
     descent.restart();
     let mut objects = many.broad.clone();
     while let Some(child) = many.boxes.next::<_, false>(n, &mut descent, &boxes, limit) {

@@ -63,6 +63,12 @@ impl Affine {
         )
     }
 
+    /// The magnitudes of the entries.
+    pub fn abs(&self) -> Self {
+        let rows = self.rows.map(|row| row.map(f64::abs));
+        Self { rows }
+    }
+
     pub fn columns(&self) -> [DVec3; 3] {
         let r = &self.rows;
         std::array::from_fn(|j| DVec3::new(r[0][j], r[1][j], r[2][j]))
