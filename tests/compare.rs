@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use etalon::inside::compare::{LEVEL, flip, judge};
-use etalon::inside::film::provenance::hash;
+use etalon::inside::film::hash;
 use etalon::inside::film::spectral::channel_name;
 use etalon::inside::film::{exr, names};
 use etalon::inside::stats::student;

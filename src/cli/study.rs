@@ -2,9 +2,11 @@
 
 mod watch;
 
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use etalon::inside::chart::{self, Curve, Figure, Key, curves, figures};
+use etalon::inside::film::whole;
 use etalon::inside::study::budget::{BudgetError, Fits};
 use etalon::inside::study::grid::GridError;
 use etalon::inside::study::own::MARGIN;
@@ -154,14 +156,7 @@ pub fn write_chart(base: &Path, svg: &str) -> Result<PathBuf, CommandError> {
 
 /// Writes a file, whole or not at all.
 pub fn write(path: &Path, content: &[u8]) -> Result<(), CommandError> {
-    use std::io::Write as _;
-    Ok(etalon::inside::film::whole::write(path, |file| {
-        file.write_all(content)
-            .map_err(|source| etalon::inside::film::Error::Write {
-                path: path.to_owned(),
-                source,
-            })
-    })?)
+    Ok(whole::write(path, |file| file.write_all(content))?)
 }
 
 /// What was found, for people.

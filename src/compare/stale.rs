@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::Side;
-use crate::film::provenance::hash;
+use crate::film::hash;
 use crate::scene;
 
 /// What is found where the picture says its scene is.

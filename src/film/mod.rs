@@ -9,13 +9,14 @@ pub mod exr;
 pub mod names;
 pub mod pixels;
 pub mod png;
-pub mod provenance;
 pub mod spectral;
 pub mod whole;
 
 use std::collections::HashSet;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+
+use sha2::{Digest, Sha256};
 
 /// Named channels over `width` × `height` pixels, with attributes.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,90 +62,35 @@ pub enum Attribute {
     Double(f64),
 }
 
-/// Why a picture could not be written or read.
+/// Why a file could not be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The operating system refused to write.
+    /// Nothing has been written. The kind of the source is `InvalidInput` where the picture contradicts
+    /// itself or breaks a rule of the file format.
     #[error("cannot write {}: {source}", path.display())]
     Write {
         /// The file that was to be written.
         path: PathBuf,
-        /// What the operating system says.
+        /// What the operating system or the file format objects to.
         source: io::Error,
     },
-    /// The directory the file belongs into does not take new files.
-    #[error("cannot write {}: no file can be created in the directory {}: {source}", path.display(), directory.display())]
-    Directory {
-        /// The file that was to be written.
-        path: PathBuf,
-        /// The directory.
-        directory: PathBuf,
-        /// What the operating system says.
-        source: io::Error,
-    },
-    /// The path names something that must not be replaced.
-    #[error("cannot write {}: {reason}", path.display())]
-    Target {
-        /// The file that was to be written.
-        path: PathBuf,
-        /// What stands there.
-        reason: &'static str,
-    },
-    /// The operating system refused to read.
+    /// The kind of the source is `InvalidData` where the file is no OpenEXR file, or one that is
+    /// damaged or holds what a [`Picture`] cannot.
     #[error("cannot read {}: {source}", path.display())]
     Read {
         /// The file that was to be read.
         path: PathBuf,
-        /// What the operating system says.
+        /// What the operating system says, or what is wrong with the file.
         source: io::Error,
     },
-    /// The file is no OpenEXR file, or one that is damaged or holds what a [`Picture`] cannot.
-    #[error("cannot read {}: {reason}", path.display())]
-    Content {
-        /// The file that was to be read.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: String,
-    },
-    /// The picture contradicts itself or breaks a rule of the file format.
-    #[error("cannot write {}: {reason}", path.display())]
-    Picture {
-        /// The file that was to be written.
-        path: PathBuf,
-        /// What is wrong with the picture.
-        reason: String,
-    },
-}
-
-impl Error {
-    /// The file this is about.
-    #[must_use]
-    pub fn path(&self) -> &Path {
-        match self {
-            Self::Write { path, .. }
-            | Self::Directory { path, .. }
-            | Self::Target { path, .. }
-            | Self::Read { path, .. }
-            | Self::Content { path, .. }
-            | Self::Picture { path, .. } => path,
-        }
-    }
 }
 
 impl Values {
-    /// How many values there are.
-    #[must_use]
-    pub fn len(&self) -> usize {
+    fn len(&self) -> usize {
         match self {
             Self::F32(values) => values.len(),
             Self::U32(values) => values.len(),
         }
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 }
 
@@ -173,6 +119,13 @@ impl Attribute {
     pub fn whole_number(value: u64) -> Self {
         i32::try_from(value).map_or_else(|_| Self::Text(value.to_string()), Self::Int)
     }
+}
+
+/// SHA-256 (FIPS 180-4) of a text's UTF-8 bytes, 64 hexadecimal digits: the hash of scenes.
+#[must_use]
+pub fn hash(text: &str) -> String {
+    let digest = Sha256::digest(text.as_bytes());
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 impl Picture {

@@ -15,8 +15,6 @@ pub const STANDARD_ERROR: &str = "standard_error";
 pub const VARIANCE: &str = "variance";
 /// Layer: unit normal of the first visible surface, world coordinates.
 pub const NORMAL: &str = "N";
-/// Layer: albedo of the first visible surface.
-pub const ALBEDO: &str = "albedo";
 /// Depth of the first visible surface, scene units.
 pub const DEPTH: &str = "Z";
 /// Camera paths that went into the pixel (whole numbers).

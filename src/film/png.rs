@@ -10,7 +10,7 @@
 //!
 //! A pixel that is not finite is painted pure magenta, to be seen rather than hidden.
 
-use std::io::{BufWriter, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use image::codecs::png::PngEncoder;
@@ -32,61 +32,55 @@ const NOT_FINITE: [u8; 3] = [255, 0, 255];
 /// not at all; returns the factor of [`exposure`] it used.
 ///
 /// # Errors
-/// [`Error::Picture`] when the number of pixels is not `width` × `height` or not one that PNG can
-/// hold; otherwise as [`whole::write()`].
+/// As [`write_bytes`].
 pub fn write_preview(
     path: &Path,
     width: usize,
     height: usize,
     rgb: &[[f32; 3]],
 ) -> Result<f64, Error> {
-    let contradiction = |reason| Error::Picture {
-        path: path.to_owned(),
-        reason,
-    };
-    if rgb.is_empty() || width.checked_mul(height) != Some(rgb.len()) {
-        let count = rgb.len();
-        return Err(contradiction(format!(
-            "{count} pixels are no {width} × {height}"
-        )));
-    }
     let exposure = exposure(rgb);
-    let bytes: Vec<u8> = rgb
-        .iter()
-        .flat_map(|&pixel| encode(pixel, exposure))
-        .collect();
-    write_bytes(path, width, height, &bytes)?;
+    let colours: Vec<[u8; 3]> = rgb.iter().map(|&pixel| encode(pixel, exposure)).collect();
+    write_bytes(path, width, height, &colours)?;
     Ok(exposure)
 }
 
 /// Writes `width` × `height` sRGB colours of three bytes, rows from the top, whole or not at all.
 ///
 /// # Errors
-/// As [`write_preview`].
-pub fn write_bytes(path: &Path, width: usize, height: usize, bytes: &[u8]) -> Result<(), Error> {
-    let contradiction = |reason| Error::Picture {
-        path: path.to_owned(),
-        reason,
-    };
-    let refused = |source| Error::Write {
-        path: path.to_owned(),
-        source,
-    };
-    let (Ok(columns), Ok(rows)) = (u32::try_from(width), u32::try_from(height)) else {
-        return Err(contradiction(format!(
-            "{width} × {height} is too large for PNG"
-        )));
-    };
+/// [`Error::Write`], of the kind `InvalidInput` when the number of pixels is not `width` × `height` or
+/// not one that PNG can hold; otherwise as [`whole::write()`].
+pub fn write_bytes(
+    path: &Path,
+    width: usize,
+    height: usize,
+    colours: &[[u8; 3]],
+) -> Result<(), Error> {
+    let contradiction = |reason: String| io::Error::new(io::ErrorKind::InvalidInput, reason);
     whole::write(path, |file| {
+        let count = colours.len();
+        if count == 0 || width.checked_mul(height) != Some(count) {
+            let reason = format!("{count} pixels are no {width} × {height}");
+            return Err(contradiction(reason));
+        }
+        let (Ok(columns), Ok(rows)) = (u32::try_from(width), u32::try_from(height)) else {
+            return Err(contradiction(format!(
+                "{width} × {height} is too large for PNG"
+            )));
+        };
         let mut out = BufWriter::new(file);
-        let encoder = PngEncoder::new(&mut out);
-        encoder
-            .write_image(bytes, columns, rows, ExtendedColorType::Rgb8)
+        PngEncoder::new(&mut out)
+            .write_image(
+                colours.as_flattened(),
+                columns,
+                rows,
+                ExtendedColorType::Rgb8,
+            )
             .map_err(|error| match error {
-                ImageError::IoError(source) => refused(source),
+                ImageError::IoError(source) => source,
                 other => contradiction(other.to_string()),
             })?;
-        out.flush().map_err(refused)
+        out.flush()
     })
 }
 

@@ -95,15 +95,9 @@ pub(super) fn push_spectral(picture: &mut Picture, grid: &BinGrid, rendered: &Re
         };
         Some(Bin {
             nm,
-            sensitivity: Vec::new(),
             values: single(|e| e.mean[0]),
-            standard_errors: if known {
-                single(|e| e.standard_error[0])
-            } else {
-                Vec::new()
-            },
+            standard_errors: known.then(|| single(|e| e.standard_error[0])),
         })
     };
-    let bins = grid.centres().iter().enumerate().filter_map(bin).collect();
-    picture.push_spectral(bins);
+    picture.push_spectral(grid.centres().iter().enumerate().filter_map(bin));
 }

@@ -6,8 +6,7 @@ use super::builder::Render;
 use super::layers;
 use super::session::Rendered;
 use super::trace::Singular;
-use crate::film::provenance::Provenance;
-use crate::film::{Attribute, Channel, Picture, names};
+use crate::film::{Attribute, Channel, Picture, hash, names};
 use crate::integrate::intersect::Rungs;
 use crate::plan::choose::Precision;
 
@@ -38,70 +37,90 @@ impl Render {
             layers::push_spectral(&mut picture, grid, rendered);
         }
         picture.attributes.extend(self.provenance(rendered));
-        self.further(&mut picture, rendered);
         Ok(picture)
     }
 
+    /// Where the picture comes from: enough to make it again, and what is known about its error.
+    ///
+    /// What does not apply is absent, but an absent limit of the path length is said as the text
+    /// "unlimited"; whole numbers that need more than 31 bits, and the seed always, are decimal text.
     fn provenance(&self, rendered: &Rendered) -> Vec<(String, Attribute)> {
         let (scene, plan) = (self.scene(), self.plan());
-        let error = rendered.mean_luminance().standard_error;
-        let limited = scene.image.max_depth.is_some();
-        let provenance = Provenance {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            scene_path: scene.source.path.clone(),
-            scene_text: scene.source.text.clone(),
-            panel: scene.panel.clone(),
-            seed: scene.image.seed,
-            spp: rendered.samples.into(),
-            sampler: scene.image.sampler.name().to_owned(),
-            replicates: rendered.replicates(),
-            precision: plan.choices.precision.name().to_owned(),
-            wavelengths: plan.choices.wavelengths,
-            plan: self.explain().join("\n"),
-            max_depth: scene.image.max_depth,
-            seconds: rendered.seconds,
-            samples_per_second: rendered.samples_per_second(),
-            nan_count: rendered.not_a_number,
-            standard_error: error.is_finite().then_some(error),
-            energy_cut: limited.then(|| rendered.cut_off().value),
-            lights_left_out: plan.left_out.clone(),
+        let (source, image) = (&scene.source, &scene.image);
+        let text = |value: &str| Some(Attribute::Text(value.to_owned()));
+        let count = |value: u64| Some(Attribute::whole_number(value));
+        let double = |value: f64| Some(Attribute::Double(value));
+        let error = Some(rendered.mean_luminance().standard_error).filter(|e| e.is_finite());
+        let cut_off = image.max_depth.map(|_| rendered.cut_off());
+        let strata = rendered.samples < image.spp && image.sampler.needs_count();
+        let settings = source
+            .set
+            .iter()
+            .map(|(key, value)| format!("{key}={value}"));
+        let settings: Vec<String> = settings.collect();
+        let [width, height] = image.size;
+        // Some readers drop empty texts, and "none" is an answer.
+        let lights = match plan.left_out.join(", ") {
+            lights if lights.is_empty() => "none".to_owned(),
+            lights => lights,
         };
-        provenance.attributes()
-    }
-
-    /// What is known beyond the provenance of every picture.
-    fn further(&self, picture: &mut Picture, rendered: &Rendered) {
-        let scene = self.scene();
-        let mut add = |name: &str, value| picture.attributes.push((name.to_owned(), value));
-        let settings = scene.source.set.iter();
-        let settings: Vec<_> = settings
-            .map(|(key, value)| format!("{key}={value}"))
-            .collect();
-        if !settings.is_empty() {
-            add("settings", Attribute::Text(settings.join("\n")));
-        }
-        if let Some(crop) = self.crop() {
-            let [width, height] = scene.image.size;
-            add(
+        let attributes = [
+            ("etalonVersion", text(env!("CARGO_PKG_VERSION"))),
+            ("sceneFile", text(&source.path)),
+            ("sceneHash", text(&hash(&source.text))),
+            ("sceneText", text(&source.text)),
+            ("panel", scene.panel.as_deref().and_then(text)),
+            (
+                "settings",
+                text(&settings.join("\n")).filter(|_| !settings.is_empty()),
+            ),
+            ("seed", text(&image.seed.to_string())),
+            ("spp", count(rendered.samples.into())),
+            (
+                "sppPlanned",
+                text(&image.spp.to_string()).filter(|_| strata),
+            ),
+            ("sampler", text(image.sampler.name())),
+            ("replicates", count(rendered.replicates().into())),
+            ("precision", text(plan.choices.precision.name())),
+            ("wavelengths", count(plan.choices.wavelengths.into())),
+            ("instructions", text(self.instructions.name())),
+            ("plan", text(&self.explain().join("\n"))),
+            (
+                "rungs",
+                text(&rungs(&rendered.rungs, plan.choices.precision)),
+            ),
+            (
+                "maxDepth",
+                image
+                    .max_depth
+                    .map_or_else(|| text("unlimited"), |n| count(n.into())),
+            ),
+            (
                 "crop",
-                Attribute::Text(format!("{crop} of {width}x{height}")),
-            );
-        }
-        let instructions = self.instructions.name().to_owned();
-        add("instructions", Attribute::Text(instructions));
-        let rungs = rungs(&rendered.rungs, self.plan().choices.precision);
-        add("rungs", Attribute::Text(rungs));
-        let planned = scene.image.spp;
-        if rendered.samples < planned && scene.image.sampler.needs_count() {
-            add("sppPlanned", Attribute::Text(planned.to_string()));
-        }
-        if let Some(goal) = self.goal() {
-            add("targetError", Attribute::Double(goal.error));
-        }
-        if scene.image.max_depth.is_some() {
-            let error = rendered.cut_off().standard_error;
-            add("energyCutStandardError", Attribute::Double(error));
-        }
+                self.crop()
+                    .and_then(|crop| text(&format!("{crop} of {width}x{height}"))),
+            ),
+            (
+                "targetError",
+                self.goal().and_then(|goal| double(goal.error)),
+            ),
+            ("seconds", double(rendered.seconds)),
+            ("samplesPerSecond", double(rendered.samples_per_second())),
+            ("nanCount", count(rendered.not_a_number)),
+            ("standardError", error.and_then(double)),
+            (
+                "energyCutByMaxDepth",
+                cut_off.and_then(|share| double(share.value)),
+            ),
+            (
+                "energyCutStandardError",
+                cut_off.and_then(|share| double(share.standard_error)),
+            ),
+            ("lightsLeftOut", text(&lights)),
+        ];
+        let known = |(name, value): (&str, Option<_>)| Some((name.to_owned(), value?));
+        attributes.into_iter().filter_map(known).collect()
     }
 }
 

@@ -5,8 +5,7 @@ use std::path::Path;
 use super::measure::planes;
 use super::reference::{Reference, ReferenceError};
 use super::subject::Ready;
-use crate::film::provenance::hash;
-use crate::film::{Attribute, Picture, exr, names};
+use crate::film::{Attribute, Picture, exr, hash, names};
 use crate::render::Progress;
 
 /// How many times the reference's error, as a root mean square, is to lie below the best point's.

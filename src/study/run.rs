@@ -16,7 +16,7 @@ use super::subject::{Ready, Subject};
 use super::work::{Timed, Work};
 use crate::chart::Key;
 use crate::chart::Row;
-use crate::film::{provenance, whole};
+use crate::film::{hash, whole};
 use crate::render::memory;
 
 /// What is asked for.
@@ -114,11 +114,7 @@ pub fn run(request: &Request, watch: &mut dyn Watch) -> Result<Study, StudyError
     .text();
     whole::write(&record, |file| {
         use std::io::Write as _;
-        let written = file.write_all(record_text.as_bytes());
-        written.map_err(|source| crate::film::Error::Write {
-            path: record.clone(),
-            source,
-        })
+        file.write_all(record_text.as_bytes())
     })?;
     let mut journal = Journal::open(&request.directory.join("study.csv"))?;
     let mut clock = Clock::new(watch, work.remaining(&cost, &journal));
@@ -203,7 +199,7 @@ fn said(request: &Request, base: &Ready, found: &Found) -> Vec<(String, String)>
     let overrides = &request.subject.overrides;
     let pairs = [
         ("scene", source.path.clone()),
-        ("scene_hash", provenance::hash(&source.text)),
+        ("scene_hash", hash(&source.text)),
         ("panel", overrides.panel.clone().unwrap_or_default()),
         ("set", set.join(" ")),
         ("finder", overrides.finder.clone().unwrap_or_default()),
