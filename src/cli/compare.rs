@@ -2,17 +2,15 @@
 
 mod text;
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use etalon::inside::compare::stale::{Freshness, different_scenes, freshness};
 use etalon::inside::compare::write_heatmap;
-use etalon::{Attribute, Comparison, Estimate, Side};
+use etalon::{Attribute, CompareError, Comparison, Estimate, Side};
 use serde::Serialize;
 
-use super::Answer;
 use super::args::Compare;
-use super::error::CommandError;
+use super::{Answer, Failure, say};
 
 /// All that there is to say.
 #[derive(Serialize)]
@@ -44,47 +42,53 @@ enum With {
 }
 
 /// Compares and says so.
-pub fn run(arguments: &Compare) -> Result<Answer, CommandError> {
-    let a = Side::read(&arguments.a)?;
-    let b = arguments.b.as_deref().map(Side::read).transpose()?;
+pub fn run(arguments: &Compare) -> Result<Answer, Failure> {
+    let read = |path: &Path| Side::read(path).map_err(|error| words(&error));
+    let a = read(&arguments.a)?;
+    let b = arguments.b.as_deref().map(read).transpose()?;
     let report = match (&b, arguments.truth) {
         (Some(b), _) => with_picture(arguments, &a, b)?,
         (None, Some(truth)) => with_number(&a, truth),
-        (None, None) => {
-            return Err(CommandError::Arguments(
-                "nothing to compare with".to_owned(),
-            ));
-        }
+        (None, None) => return Err("nothing to compare with".into()),
     };
-    let mut output = std::io::stdout().lock();
-    let said = if arguments.json {
-        let json = serde_json::to_string_pretty(&report);
-        json.map_err(|error| CommandError::Output(error.into()))?
+    if arguments.json {
+        say(&serde_json::to_string_pretty(&report)?)?;
     } else {
-        text::text(&report)
-    };
-    writeln!(output, "{}", said.trim_end())
-        .and_then(|()| output.flush())
-        .map_err(CommandError::Output)?;
+        say(text::text(&report).trim_end())?;
+    }
     match &report.comparison.judgement {
         Some(judgement) if judgement.consistent => Ok(Answer::Good),
         Some(_) => Ok(Answer::No),
-        None => Err(CommandError::NoVerdict(why_not(&a, b.as_ref()))),
+        None => Err(format!("no verdict: {}", why_not(&a, b.as_ref())).into()),
     }
 }
 
-fn with_picture(arguments: &Compare, a: &Side, b: &Side) -> Result<Report, CommandError> {
-    let comparison = Comparison::of_sides(a, b)?;
-    let mut notes = Vec::new();
+/// Why pictures cannot be compared, and what to type.
+fn words(error: &CompareError) -> String {
+    match error {
+        CompareError::NotFinite { .. } => {
+            format!("{error}: render it again, or find out with etalon replay where they come from")
+        }
+        CompareError::Sizes { .. } => format!("{error} (etalon render --size)"),
+        other => other.to_string(),
+    }
+}
+
+fn with_picture(arguments: &Compare, a: &Side, b: &Side) -> Result<Report, Failure> {
+    let comparison = Comparison::of_sides(a, b).map_err(|error| words(&error))?;
     let stale = [a, b].map(stale);
     if let Some(difference) = different_scenes(a, b) {
-        let because: Vec<String> = stale.into_iter().flatten().collect();
-        return Err(CommandError::Scenes(difference, because.join("; ")));
+        let words: Vec<String> = [Some(difference)]
+            .into_iter()
+            .chain(stale)
+            .flatten()
+            .collect();
+        return Err(words.join("; ").into());
     }
     if let (None, Some(words)) = (a.text("sceneHash"), &stale[1]) {
-        return Err(CommandError::Scenes(words.clone(), String::new()));
+        return Err(words.clone().into());
     }
-    notes.extend(stale.into_iter().flatten());
+    let mut notes: Vec<String> = stale.into_iter().flatten().collect();
     notes.extend(only_one(a, b));
     notes.extend(other_lengths(a, b));
     let heatmap_scale = match &arguments.heatmap {

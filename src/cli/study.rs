@@ -1,12 +1,8 @@
 //! `etalon study`: error over samples and seconds, for a grid of choices.
 
-mod watch;
-
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use etalon::inside::chart::{self, Curve, Figure, Key, curves, figures};
-use etalon::inside::film::whole;
 use etalon::inside::study::budget::{BudgetError, Fits};
 use etalon::inside::study::grid::GridError;
 use etalon::inside::study::own::MARGIN;
@@ -15,24 +11,15 @@ use etalon::inside::study::run::{Request, Study, run as run_study};
 use etalon::inside::study::subject::{Subject, SubjectError};
 use etalon::inside::study::{StudyError, choice, report};
 
-use super::args;
-use super::error::{CommandError, scene_words};
-use super::render::{progress, say, threads};
-use super::{Answer, tell};
-use watch::Shown;
+use super::progress::{Studying, listen};
+use super::{Answer, Failure, args, quoted, say, scene_words, tell, threads, write};
 
 /// Carries out a study, or goes on with one, and draws what there is.
-pub fn run(arguments: &args::Study) -> Result<Answer, CommandError> {
-    let request = request(arguments)?;
+pub fn run(arguments: &args::Study) -> Result<Answer, Failure> {
     let threads = threads(arguments.threads)?;
-    progress::listen();
-    let request = Request {
-        threads: threads.current_num_threads() as u32,
-        ..request
-    };
-    let mut shown = Shown::new(arguments.quiet);
-    let study = threads.install(|| run_study(&request, &mut shown));
-    shown.finish();
+    listen();
+    let request = request(arguments, threads.current_num_threads() as u32);
+    let study = threads.install(|| run_study(&request, &mut Studying::new(arguments.quiet)));
     let study = study.map_err(|error| said(&error))?;
     publish(&request, &study)?;
     say(&said_of(&request, &study))?;
@@ -43,8 +30,8 @@ pub fn run(arguments: &args::Study) -> Result<Answer, CommandError> {
 }
 
 /// What a study complains of, and what to type instead.
-fn said(error: &StudyError) -> CommandError {
-    CommandError::Study(match error {
+fn said(error: &StudyError) -> String {
+    match error {
         StudyError::OneReplicate => format!("--replicates: {error}"),
         StudyError::Subject(SubjectError::Scene(scene)) => scene_words(scene),
         StudyError::Grid(GridError::Twice(_)) => {
@@ -80,44 +67,40 @@ fn said(error: &StudyError) -> CommandError {
             )
         }
         other => other.to_string(),
-    })
+    }
 }
 
-fn request(arguments: &args::Study) -> Result<Request, CommandError> {
+fn request(arguments: &args::Study, threads: u32) -> Request {
     let scene = &arguments.scene;
-    let mut overrides = scene.overrides(arguments.panel.as_deref(), &[]);
-    if let Some(seed) = &arguments.seed {
-        overrides.set.push(("image.seed".to_owned(), seed.clone()));
-    }
     let directory = arguments.output.clone().unwrap_or_else(|| {
         let name = choice::stem(&scene.scene);
-        let panel = arguments.panel.iter().map(|panel| format!("-{panel}"));
+        let panel = scene.panel.iter().map(|panel| format!("-{panel}"));
         PathBuf::from(format!("{name}{}-study", panel.collect::<String>()))
     });
-    Ok(Request {
+    Request {
         subject: Subject {
             path: scene.scene.clone(),
-            overrides,
+            overrides: scene.overrides(&[("seed", &arguments.seed)]),
             instructions: arguments.instructions,
         },
         axes: arguments.over.clone(),
         replicates: arguments.replicates,
         reference: arguments.reference.clone(),
-        budget: arguments.budget.0.as_secs_f64(),
-        threads: 0,
+        budget: arguments.budget.as_secs_f64(),
+        threads,
         directory,
         command: command_line(),
-    })
+    }
 }
 
 /// The command as it could be typed again.
 fn command_line() -> String {
-    let words = std::env::args().skip(1).map(|word| super::quoted(&word));
+    let words = std::env::args().skip(1).map(|word| quoted(&word));
     format!("etalon {}", words.collect::<Vec<_>>().join(" "))
 }
 
 /// Draws the charts and writes the report.
-fn publish(request: &Request, study: &Study) -> Result<(), CommandError> {
+fn publish(request: &Request, study: &Study) -> Result<(), Failure> {
     let abscissa = study.grid.abscissa.key;
     let curves = curves(&study.rows, abscissa);
     if curves.is_empty() {
@@ -140,23 +123,18 @@ fn publish(request: &Request, study: &Study) -> Result<(), CommandError> {
         }
     }
     let page = report::html(request, study, &curves, &drawn);
-    write(&request.directory.join("report.html"), page.as_bytes())
+    write(&request.directory.join("report.html"), &page)
 }
 
 /// Writes a chart as NAME.svg and returns that path; NAME may have the ending already, any other dot
 /// belongs to the name.
-pub fn write_chart(base: &Path, svg: &str) -> Result<PathBuf, CommandError> {
+pub fn write_chart(base: &Path, svg: &str) -> Result<PathBuf, Failure> {
     let mut path = base.to_owned();
     if base.extension().is_none_or(|ending| ending != "svg") {
         path.as_mut_os_string().push(".svg");
     }
-    write(&path, svg.as_bytes())?;
+    write(&path, svg)?;
     Ok(path)
-}
-
-/// Writes a file, whole or not at all.
-pub fn write(path: &Path, content: &[u8]) -> Result<(), CommandError> {
-    Ok(whole::write(path, |file| file.write_all(content))?)
 }
 
 /// What was found, for people.

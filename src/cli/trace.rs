@@ -6,16 +6,13 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use etalon::inside::render::trace::Decided;
-use etalon::{First, FirstHit, Found, Scene, Tier, Tracer};
+use etalon::inside::shape::implicit::certified::Workspace;
+use etalon::{First, FirstHit, Found, Tier, Tracer};
 use rayon::prelude::*;
 
 use super::args::Trace;
-use super::error::CommandError;
-use super::{Answer, tell};
-pub use rays::RayError;
+use super::{Answer, Failure, tell};
 use rays::{Line, Lines, Table};
-
-use etalon::inside::shape::implicit::certified::Workspace;
 
 const HEADING: &str = "id,hit,t,x,y,z,nx,ny,nz,object,\
      finder,enclosure_low,enclosure_high,multiplicity,tier\n";
@@ -26,22 +23,17 @@ const PIECE: usize = 1 << 10;
 const PIECES: usize = 256;
 
 /// Prints the first hit of each ray.
-pub fn run(arguments: &Trace) -> Result<Answer, CommandError> {
-    let scene = Scene::load_with(&arguments.scene.scene, &arguments.overrides())?;
-    let tracer = Tracer::new(&scene)?;
+pub fn run(arguments: &Trace) -> Result<Answer, Failure> {
+    let tracer = Tracer::new(&arguments.scene.load(&[])?)?;
     let mut lines = Lines::open(&arguments.rays)?;
     let table = lines.heading()?;
     if !arguments.quiet && !table.ignored.is_empty() {
-        tell(&format!(
-            "note: ignored columns: {}",
-            table.ignored.join(", ")
-        ));
+        let names = table.ignored.join(", ");
+        tell(&format!("note: ignored columns: {names}"));
     }
     let mut decided = Decided::default();
     let mut output = io::stdout().lock();
-    output
-        .write_all(HEADING.as_bytes())
-        .map_err(CommandError::Output)?;
+    output.write_all(HEADING.as_bytes())?;
     loop {
         let (batch, end) = read_batch(&mut lines);
         let pieces: Vec<Piece> = batch
@@ -49,9 +41,7 @@ pub fn run(arguments: &Trace) -> Result<Answer, CommandError> {
             .map(|lines| trace(&tracer, &table, lines))
             .collect();
         for piece in pieces {
-            output
-                .write_all(piece.text.as_bytes())
-                .map_err(CommandError::Output)?;
+            output.write_all(piece.text.as_bytes())?;
             decided = decided.joined(piece.decided);
             piece.end?;
         }
@@ -59,7 +49,7 @@ pub fn run(arguments: &Trace) -> Result<Answer, CommandError> {
             break;
         }
     }
-    output.flush().map_err(CommandError::Output)?;
+    output.flush()?;
     if !arguments.quiet {
         tell(&summary(&decided));
     }
@@ -67,7 +57,7 @@ pub fn run(arguments: &Trace) -> Result<Answer, CommandError> {
 }
 
 /// The next lines, and whether they are the last ones; those before an unreadable one count.
-fn read_batch(lines: &mut Lines) -> (Vec<Line>, Result<bool, RayError>) {
+fn read_batch(lines: &mut Lines) -> (Vec<Line>, Result<bool, Failure>) {
     let mut batch = Vec::with_capacity(PIECE);
     while batch.len() < PIECE * PIECES {
         match lines.next_line() {
@@ -84,7 +74,7 @@ struct Piece {
     text: String,
     decided: Decided,
     /// The first line that is no ray ends the table.
-    end: Result<(), RayError>,
+    end: Result<(), Failure>,
 }
 
 fn trace(tracer: &Tracer, table: &Table, lines: &[Line]) -> Piece {
