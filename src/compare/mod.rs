@@ -4,10 +4,9 @@
 //! A [`Side`] is what is known of one picture: means and variances by channel and pixel. From two
 //! sides come the [`metrics`](crate::stats::metrics), and, where both know their variances, a
 //! [`Judgement`]: image means by channel, block by block, and the distribution of all blocks, at
-//! one level for the whole family; a [`Comparison`] is all of it. [`stale`] finds references whose scene has changed since.
+//! one level for the whole family; a [`Comparison`] is all of it. [`stale`] finds references whose
+//! scene has changed since.
 
-mod blocks;
-mod comparison;
 mod flip;
 mod heatmap;
 mod judge;
@@ -15,17 +14,16 @@ mod measure;
 mod side;
 pub mod stale;
 
-pub use blocks::{Block, LEAST_FREEDOM, blocks};
-pub use comparison::Comparison;
 pub use flip::flip;
 pub use heatmap::write_heatmap;
-pub use judge::{ChannelJudgement, Judgement, LEVEL, ROUNDING, against_truth, judge};
-pub use measure::{ChannelMetrics, Metrics, metrics};
+pub use judge::{ChannelJudgement, Judgement, LEVEL, judge};
+pub use measure::{ChannelMetrics, Metrics};
 pub use side::{Channel, Side, mean_over};
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use crate::film;
+use crate::film::{self, Picture};
+use crate::stats::metrics::Metric;
 
 /// Why pictures cannot be compared.
 #[derive(Debug, thiserror::Error)]
@@ -84,4 +82,63 @@ pub enum CompareError {
         /// Their channels.
         names: [String; 2],
     },
+}
+
+/// How far two pictures are apart, or a picture and a number, and whether noise alone explains it.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Comparison {
+    /// The metrics by channel; none against a number.
+    pub channels: Vec<ChannelMetrics>,
+    /// The metrics of R, G and B together.
+    pub rgb: Option<Metrics>,
+    /// HDR-FLIP of the second picture and the first, the mean over the pixels.
+    pub flip: Option<Metric>,
+    /// The verdict at the level [`LEVEL`], where variances are known.
+    pub judgement: Option<Judgement>,
+}
+
+impl Comparison {
+    /// Compares a picture with a reference.
+    ///
+    /// # Errors
+    /// [`CompareError`] for pictures of different sizes or without a common channel, and for values
+    /// that are not numbers.
+    pub fn of(picture: &Picture, reference: &Picture) -> Result<Self, CompareError> {
+        let side =
+            |name: &str, picture: &Picture| Side::of_picture(Path::new(name), picture.clone());
+        Self::of_sides(
+            &side("the picture", picture)?,
+            &side("the reference", reference)?,
+        )
+    }
+
+    /// The same of sides, such as files.
+    ///
+    /// # Errors
+    /// [`CompareError`] for sides of different sizes or without a common channel.
+    pub fn of_sides(a: &Side, b: &Side) -> Result<Self, CompareError> {
+        let (channels, rgb) = measure::metrics(a, b)?;
+        let flip = match (a.rgb(), b.rgb()) {
+            (Some(own), Some(reference)) => Some(Metric::mean(&flip(&reference, &own, a.width))),
+            _ => None,
+        };
+        Ok(Self {
+            channels,
+            rgb,
+            flip,
+            judgement: judge(a, b, LEVEL),
+        })
+    }
+
+    /// Judges the image means of a side against a number that each of its pixels is known to have.
+    #[must_use]
+    pub fn with_truth(a: &Side, truth: f64) -> Self {
+        Self {
+            channels: Vec::new(),
+            rgb: None,
+            flip: None,
+            judgement: judge::against_truth(a, truth, LEVEL),
+        }
+    }
 }

@@ -106,12 +106,6 @@ impl Side {
             _ => None,
         }
     }
-
-    /// The mean of a channel over some pixels, or all, where its variances are known.
-    #[must_use]
-    pub fn mean(&self, channel: &Channel, pixels: Option<&[usize]>) -> Option<Estimate> {
-        mean_over(channel, self.freedom?, pixels)
-    }
 }
 
 /// The mean of a channel over some pixels, or all; pixels are independent of each other.

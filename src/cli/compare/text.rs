@@ -59,7 +59,12 @@ fn push_metrics(text: &mut String, report: &Report) {
     for channel in &report.comparison.channels {
         let [a, b] = channel.means;
         let means = format!("{:<20} {a:>12.6} {b:>12.6}", channel.channel);
-        push_row(text, &means, &channel.metrics);
+        let metrics = &channel.metrics;
+        if [a, b, metrics.rmse.value] == [0.0; 3] && metrics.smape.value.is_nan() {
+            let _ = writeln!(text, "{means} black in both pictures");
+        } else {
+            push_row(text, &means, metrics);
+        }
     }
     if let Some(metrics) = &report.comparison.rgb {
         push_row(
@@ -83,23 +88,42 @@ fn push_row(text: &mut String, start: &str, metrics: &Metrics) {
         .relmse_without_reference_variance
         .map_or_else(|| "unknown".to_owned(), measured);
     let relative = metrics.relative_mean_error;
-    let _ = writeln!(
-        text,
-        "{start} {:>+12.2e} {:>20} {:>18} {:>18} {unbiased:>18} {:>18}",
-        metrics.mean_error.value,
+    let relative = if relative.value.is_nan() {
+        UNDEFINED.to_owned()
+    } else {
         format!(
             "{:+.4} % ± {:.4} %",
             100.0 * relative.value,
             100.0 * relative.standard_error
-        ),
+        )
+    };
+    let _ = writeln!(
+        text,
+        "{start} {:>+12.2e} {relative:>20} {:>18} {:>18} {unbiased:>18} {:>18}",
+        metrics.mean_error.value,
         measured(metrics.rmse),
         measured(metrics.relmse),
         measured(metrics.smape),
     );
 }
 
-fn measured(metric: Metric) -> String {
-    format!("{:.2e} ± {:.0e}", metric.value, metric.standard_error)
+/// What a metric relative to 0 is.
+const UNDEFINED: &str = "undefined";
+
+fn measured(
+    Metric {
+        value,
+        standard_error,
+    }: Metric,
+) -> String {
+    if value.is_nan() {
+        UNDEFINED.to_owned()
+    } else if standard_error.is_nan() {
+        // Of a single pixel, or the root of a mean square of 0.
+        format!("{value:.2e}")
+    } else {
+        format!("{value:.2e} ± {standard_error:.0e}")
+    }
 }
 
 fn push_judgement(text: &mut String, judgement: &Judgement) {
