@@ -79,13 +79,8 @@ pub fn is_finite<T: Scalar>(xyz: &[T; 3]) -> bool {
 }
 
 impl Pixels {
-    /// Zero sums for this many pixels, with room for any number of samples.
-    pub fn new(pixels: usize, replicates: Replicates) -> Self {
-        Self::for_samples(pixels, replicates, u32::MAX)
-    }
-
     /// Zero sums for this many pixels of at most `samples` samples each.
-    pub fn for_samples(pixels: usize, replicates: Replicates, samples: u32) -> Self {
+    pub fn new(pixels: usize, replicates: Replicates, samples: u32) -> Self {
         let slots = replicates.count(samples) as usize;
         Self {
             replicates,
@@ -117,16 +112,6 @@ impl Pixels {
         rejected
     }
 
-    /// Replicates that `samples` samples reach.
-    pub fn replicates(&self, samples: u32) -> u32 {
-        self.replicates.count(samples)
-    }
-
-    /// Samples of each replicate of every pixel after `samples` samples.
-    pub fn counts(&self, samples: u32) -> Vec<f64> {
-        self.replicates.counts(samples)
-    }
-
     /// Mean of a pixel's samples in each of its replicates, which are as many as `counts` says.
     pub fn replicate_means(&self, pixel: usize, counts: &[f64]) -> impl Iterator<Item = [f64; 3]> {
         let sums = &self.sums[pixel * self.slots..][..self.slots];
@@ -136,7 +121,7 @@ impl Pixels {
     }
 
     /// Mean and standard error of a pixel, channels mapped by `channels`; its replicates have as many
-    /// samples as [`counts`](Self::counts) says.
+    /// samples as `counts` says.
     pub fn estimate(
         &self,
         pixel: usize,

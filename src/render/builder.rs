@@ -7,7 +7,7 @@ use super::goal::{Chosen, Goal, choose};
 use super::layers::Layer;
 use super::memory::{TooLarge, available};
 use super::seeds::seed;
-use super::session::{Progress, Rendered, Request, Unwatched, render, render_binned};
+use super::session::{Progress, Rendered, Request, Unwatched, render};
 use super::tile::{Outside, Window};
 use crate::film::pixels::{Estimate, Pixels};
 use crate::math::instructions::Instructions;
@@ -18,8 +18,8 @@ use crate::scene::Scene;
 /// Samples a pixel at most: as many as the samplers' points.
 pub const MOST_SAMPLES: u32 = 1 << 24;
 
-/// A picture to be made of a scene: all of it, until the scene's samples are done, unless the
-/// methods say otherwise.
+/// A picture to be made of a scene: all of it, until the scene's samples are done, unless fields
+/// and methods say otherwise.
 ///
 /// [`run`](Self::run) renders; [`picture`](Self::picture) makes channels and attributes of that.
 #[derive(Debug)]
@@ -75,27 +75,6 @@ impl Render {
         Ok(self)
     }
 
-    /// Ends between passes after this wall-clock time.
-    #[must_use]
-    pub fn for_time(mut self, time: Duration) -> Self {
-        self.time = Some(time);
-        self
-    }
-
-    /// Adds layers about the first surface that each pixel shows.
-    #[must_use]
-    pub fn with_layers(mut self, layers: impl IntoIterator<Item = Layer>) -> Self {
-        self.layers.extend(layers);
-        self
-    }
-
-    /// Adds spectral radiance in bins.
-    #[must_use]
-    pub fn with_spectrum(mut self, bins: BinGrid) -> Self {
-        self.spectral = Some(bins);
-        self
-    }
-
     /// The scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
@@ -141,20 +120,14 @@ impl Render {
 
     /// Renders and tells of it after each pass.
     pub fn run_watched(&self, progress: &mut dyn Progress) -> Rendered {
-        let request = self.request(self.scene.image.spp, self.time);
-        match &self.spectral {
-            Some(grid) => render_binned(&self.plan, &request, grid, progress),
-            None => render(&self.plan, &request, progress),
-        }
-    }
-
-    fn request(&self, samples: u32, time: Option<Duration>) -> Request {
-        Request {
+        let request = Request {
             window: self.window(),
-            samples,
-            time,
+            samples: self.scene.image.spp,
+            time: self.time,
             instructions: self.instructions,
-        }
+            bins: self.spectral.as_ref(),
+        };
+        render(&self.plan, &request, progress)
     }
 
     /// Checks that the picture fits into memory.
@@ -174,10 +147,8 @@ impl Render {
     fn memory(&self) -> u64 {
         // R, G, B, their standard errors, and the count of samples.
         const CHANNELS: usize = 7;
-        let bins = self
-            .spectral
-            .as_ref()
-            .map_or(0, |grid| grid.centres().len());
+        let bins = self.spectral.as_ref();
+        let bins = bins.map_or(0, |grid| grid.centres().len());
         let (replicates, samples) = (self.plan.choices.replicates, self.scene.image.spp);
         let sums = Pixels::bytes_per_pixel(replicates, samples)
             + bins * Bins::bytes_per_pixel(replicates, samples);
@@ -238,7 +209,12 @@ impl Render {
         }
         self.plan
             .reseed(seed(self.scene.image.seed, "pilot", number));
-        let rendered = render(&self.plan, &self.request(samples, None), progress);
+        let request = Request {
+            window: self.window(),
+            instructions: self.instructions,
+            ..Request::whole(self.scene.image.size, samples)
+        };
+        let rendered = render(&self.plan, &request, progress);
         Ok((rendered.samples == samples).then_some(rendered))
     }
 }

@@ -6,12 +6,10 @@
 //! all that it takes to make it again. [`trace`] follows single rays, exactly.
 
 pub mod bins;
-pub mod blocks;
 pub mod builder;
 pub mod goal;
 pub mod layers;
 pub mod memory;
-pub mod pass;
 mod picture;
 pub mod replay;
 pub mod seeds;
@@ -22,4 +20,4 @@ pub mod trace;
 pub use crate::math::instructions::Instructions;
 pub use builder::Render;
 pub use replay::replay;
-pub use session::{Progress, Rendered, Request, Unwatched, render, render_binned};
+pub use session::{Progress, Rendered, Request, Unwatched, render};

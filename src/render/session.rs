@@ -6,27 +6,33 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use super::bins::{BinGrid, Bins};
-use super::pass;
-use super::tile::{Outside, Tile, Window};
+use super::tile::{Outside, Tile, Window, Worker};
 use crate::film::pixels;
 use crate::integrate::chunk;
+use crate::integrate::develop::Spectrometer;
+use crate::integrate::dispatch::Runs;
 use crate::integrate::intersect::Rungs;
+use crate::integrate::model::Model;
 use crate::math::instructions::Instructions;
-use crate::plan::Plan;
+use crate::plan::{Plan, Tables};
+use crate::sample::replicates::Replicates;
 use crate::spectrum::observer::xyz_to_linear_srgb;
 use crate::stats::Estimate;
+use crate::stats::blocks::{EDGE, members};
 
 /// What to render besides what the plan says.
 #[derive(Debug, Clone, Copy)]
-pub struct Request {
+pub struct Request<'a> {
     /// The pixels wanted; coordinates are those of the whole image.
     pub window: Window,
     /// Samples a pixel at most.
     pub samples: u32,
     /// Wall-clock time after which no further pass begins.
     pub time: Option<Duration>,
-    /// Instruction set.
+    /// Instruction set; the bits are the same with each.
     pub instructions: Instructions,
+    /// Bins of wavelength that radiance is summed in besides.
+    pub bins: Option<&'a BinGrid>,
 }
 
 /// What a render tells while it runs, between passes; returning `false` stops it.
@@ -61,19 +67,11 @@ pub struct Rendered {
     pub not_a_number: u64,
     /// The first of them, to be replayed.
     pub first_not_a_number: Option<chunk::Request>,
+    replicates: Replicates,
     tiles: Vec<Tile>,
 }
 
-/// A share with its standard error.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Share {
-    /// The estimate.
-    pub value: f64,
-    /// Its standard error.
-    pub standard_error: f64,
-}
-
-impl Request {
+impl Request<'_> {
     /// All of a picture, with the best instructions there are and no limit of time.
     pub fn whole(size: [u32; 2], samples: u32) -> Self {
         Self {
@@ -81,6 +79,7 @@ impl Request {
             samples,
             time: None,
             instructions: Instructions::best(),
+            bins: None,
         }
     }
 }
@@ -88,33 +87,13 @@ impl Request {
 /// Renders. Passes are over the whole window and their sizes are fixed before they begin, so that
 /// stopping between them favours no sample.
 pub fn render(plan: &Plan, request: &Request, progress: &mut dyn Progress) -> Rendered {
-    let tiles = request.window.tiles().into_iter();
-    let tiles = tiles.map(|window| Tile::new(window, plan.choices.replicates, request.samples));
-    run(plan, request, tiles.collect(), progress)
-}
-
-/// Renders, and sums radiance by pixel and bin of wavelength besides.
-pub fn render_binned(
-    plan: &Plan,
-    request: &Request,
-    grid: &BinGrid,
-    progress: &mut dyn Progress,
-) -> Rendered {
-    let shares = Arc::new(grid.shares(&plan.grid));
+    let (replicates, samples) = (plan.choices.replicates, request.samples);
+    let shares = request.bins.map(|grid| Arc::new(grid.shares(&plan.grid)));
+    let bins = |pixels: usize| Some(Bins::new(pixels, shares.clone()?, replicates, samples));
     let tiles = request.window.tiles().into_iter().map(|window| Tile {
-        bins: Some(Bins::new(
-            window.pixels(),
-            Arc::clone(&shares),
-            plan.choices.replicates,
-            request.samples,
-        )),
-        ..Tile::new(window, plan.choices.replicates, request.samples)
+        bins: bins(window.pixels()),
+        ..Tile::new(window, replicates, samples)
     });
-    run(plan, request, tiles.collect(), progress)
-}
-
-fn run(plan: &Plan, request: &Request, tiles: Vec<Tile>, progress: &mut dyn Progress) -> Rendered {
-    let start = Instant::now();
     let mut rendered = Rendered {
         window: request.window,
         samples: 0,
@@ -122,12 +101,14 @@ fn run(plan: &Plan, request: &Request, tiles: Vec<Tile>, progress: &mut dyn Prog
         rungs: Rungs::default(),
         not_a_number: 0,
         first_not_a_number: None,
-        tiles,
+        replicates,
+        tiles: tiles.collect(),
     };
+    let start = Instant::now();
     while rendered.samples < request.samples {
         let size = next_pass(&rendered, request, start.elapsed());
         let (from, to) = (rendered.samples, rendered.samples + size);
-        pass::run(plan, request.instructions, &mut rendered.tiles, from, to);
+        pass(plan, request.instructions, &mut rendered.tiles, from, to);
         rendered.samples = to;
         rendered.seconds = start.elapsed().as_secs_f64();
         let goes_on = progress.passed(
@@ -147,6 +128,32 @@ fn run(plan: &Plan, request: &Request, tiles: Vec<Tile>, progress: &mut dyn Prog
         rendered.first_not_a_number = rendered.first_not_a_number.or(tile.first_not_a_number);
     }
     rendered
+}
+
+/// Adds samples `from .. to` of every pixel of every tile, on the threads of the current pool.
+fn pass(plan: &Plan, level: Instructions, tiles: &mut [Tile], from: u32, to: u32) {
+    match (&plan.tables, plan.choices.wavelengths) {
+        (Tables::Single(scene), 4) => spread::<f32, 4>(scene, level, tiles, from, to),
+        (Tables::Single(scene), _) => spread::<f32, 8>(scene, level, tiles, from, to),
+        (Tables::Double(scene), 4) => spread::<f64, 4>(scene, level, tiles, from, to),
+        (Tables::Double(scene), _) => spread::<f64, 8>(scene, level, tiles, from, to),
+    }
+}
+
+fn spread<T: Runs<C>, const C: usize>(
+    scene: &(Model<T>, Spectrometer<T>),
+    level: Instructions,
+    tiles: &mut [Tile],
+    from: u32,
+    to: u32,
+) {
+    // A bridge asks for buffers once a thread; splitting the slice would ask at every split.
+    tiles
+        .iter_mut()
+        .par_bridge()
+        .for_each_init(Worker::<T, C>::default, |worker, tile| {
+            tile.add(level, scene, from, to, worker);
+        });
 }
 
 /// Longest a pass should take, seconds, so that stopping is never far away.
@@ -194,15 +201,14 @@ impl Rendered {
     /// Every pixel's estimate of radiance in a bin, row by row; `None` where bins were not asked
     /// for.
     pub fn bin(&self, bin: usize) -> Option<Vec<pixels::Estimate<1>>> {
-        let wanted = self.tiles.iter().all(|tile| tile.bins.is_some());
         let counts = self.counts();
+        let unknown = pixels::Estimate::UNKNOWN;
         let estimate = |tile: &Tile, pixel: usize| {
             let bins = tile.bins.as_ref();
-            bins.map_or(pixels::Estimate::UNKNOWN, |bins| {
-                bins.estimate(pixel, bin, &counts)
-            })
+            bins.map_or(unknown, |bins| bins.estimate(pixel, bin, &counts))
         };
-        wanted.then(|| self.image(pixels::Estimate::UNKNOWN, estimate))
+        let wanted = self.tiles.iter().all(|tile| tile.bins.is_some());
+        wanted.then(|| self.image(unknown, estimate))
     }
 
     /// Luminance of every pixel, row by row, in each of its replicates.
@@ -218,14 +224,12 @@ impl Rendered {
 
     /// Replicates that every pixel has.
     pub fn replicates(&self) -> u32 {
-        let tile = self.tiles.first();
-        tile.map_or(0, |tile| tile.pixels.replicates(self.samples))
+        self.replicates.count(self.samples)
     }
 
     /// Samples of each replicate, the same for every pixel.
     fn counts(&self) -> Vec<f64> {
-        let tile = self.tiles.first();
-        tile.map_or_else(Vec::new, |tile| tile.pixels.counts(self.samples))
+        self.replicates.counts(self.samples)
     }
 
     fn estimates(&self, channels: impl Fn([f64; 3]) -> [f64; 3] + Copy) -> Vec<pixels::Estimate> {
@@ -280,13 +284,16 @@ impl Rendered {
         })
     }
 
+    /// Mean luminance of each block of 8 × 8 pixels, row by row.
+    pub fn block_luminances(&self) -> Vec<Estimate> {
+        let [width, height] = [self.window.width(), self.window.height()].map(|n| n as usize);
+        let (image, blocks) = (self.xyz(), members(width, height, EDGE));
+        let blocks = blocks.iter();
+        blocks.map(|block| self.mean_of(&image, block, 1)).collect()
+    }
+
     /// The mean of a channel of an image of this render over some of its pixels.
-    pub(super) fn mean_of(
-        &self,
-        image: &[pixels::Estimate],
-        pixels: &[usize],
-        channel: usize,
-    ) -> Estimate {
+    fn mean_of(&self, image: &[pixels::Estimate], pixels: &[usize], channel: usize) -> Estimate {
         let values: Vec<f64> = pixels.iter().map(|&i| image[i].mean[channel]).collect();
         let errors = pixels.iter().map(|&i| image[i].standard_error[channel]);
         let variances: Vec<f64> = errors.map(|e| e * e).collect();
@@ -316,7 +323,7 @@ impl Rendered {
     }
 
     /// Share of the luminance that `max_depth` cuts off.
-    pub fn cut_off(&self) -> Share {
+    pub fn cut_off(&self) -> Estimate {
         let samples = self.window.pixels() as f64 * f64::from(self.samples);
         let (mut sum, mut squares) = (0.0, 0.0);
         for tile in &self.tiles {
@@ -327,15 +334,13 @@ impl Rendered {
         let error = ((squares / samples - mean * mean).max(0.0) / samples).sqrt();
         let whole = self.mean_luminance().value + mean;
         if whole > 0.0 {
-            Share {
+            Estimate {
                 value: mean / whole,
                 standard_error: error / whole,
+                freedom: samples - 1.0,
             }
         } else {
-            Share {
-                value: 0.0,
-                standard_error: 0.0,
-            }
+            Estimate::exact(0.0)
         }
     }
 }

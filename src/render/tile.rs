@@ -122,7 +122,7 @@ impl Tile {
     pub fn new(window: Window, replicates: Replicates, samples: u32) -> Self {
         Self {
             window,
-            pixels: Pixels::for_samples(window.pixels(), replicates, samples),
+            pixels: Pixels::new(window.pixels(), replicates, samples),
             bins: None,
             rungs: Rungs::default(),
             beyond: chunk::Beyond::default(),

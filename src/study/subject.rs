@@ -9,7 +9,6 @@ use super::seeds::seed;
 use crate::chart::Key;
 use crate::plan::choose::Precision;
 use crate::plan::{Plan, PlanError};
-use crate::render::tile::Window;
 use crate::render::{Instructions, Progress, Rendered, Request, render};
 use crate::scene::{self, Overrides, Scene, SceneError};
 
@@ -119,10 +118,9 @@ impl Ready {
     ) -> Rendered {
         self.plan.reseed(seed);
         let request = Request {
-            window: Window::whole(self.scene.image.size),
-            samples,
             time,
             instructions: self.instructions,
+            ..Request::whole(self.scene.image.size, samples)
         };
         render(&self.plan, &request, progress)
     }
