@@ -1,4 +1,4 @@
-//! What can be asked for on the command line.
+//! The commands and their arguments.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -25,17 +25,15 @@ use super::{Failure, scene_words};
                   Example: etalon render scenes/spheres.toml -o spheres.exr"
 )]
 pub struct Arguments {
-    /// What to do.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Render a scene to an OpenEXR file with its standard error and provenance.
     Render(Box<Render>),
-    /// Say what is in a scene, what it needs, and what will be done about it.
+    /// Show what is in a scene, what it needs, and how it will be rendered.
     Info(Info),
     /// Intersect given rays with a scene and print the hits as CSV.
     Trace(Trace),
@@ -86,7 +84,7 @@ impl SceneArguments {
         }
     }
 
-    /// The scene with all of that laid over it.
+    /// Reads the scene with these overrides.
     pub fn load(&self, image: ImageKeys) -> Result<Scene, Failure> {
         let scene = Scene::load_with(&self.scene, &self.overrides(image));
         Ok(scene.map_err(|error| scene_words(&error))?)
@@ -153,7 +151,7 @@ pub struct Render {
     pub quiet: bool,
 }
 
-/// Options that stand for keys of the scene's `[image]` table.
+/// Options that stand for keys of `[image]`.
 #[derive(Debug, Args)]
 pub struct ImageOptions {
     /// Camera paths per pixel.

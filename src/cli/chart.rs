@@ -8,7 +8,6 @@ use super::args;
 use super::study::write_chart;
 use super::{Answer, Failure, say, tell};
 
-/// Draws the chart.
 pub fn run(arguments: &args::Chart) -> Result<Answer, Failure> {
     let mut rows = Vec::new();
     for path in &arguments.tables {

@@ -6,42 +6,31 @@ use std::path::{Path, PathBuf};
 
 use etalon::inside::compare::stale::{Freshness, different_scenes, freshness};
 use etalon::inside::compare::write_heatmap;
-use etalon::{Attribute, CompareError, Comparison, Estimate, Side};
+use etalon::{Attribute, CompareError, Comparison, Side};
 use serde::Serialize;
 
 use super::args::Compare;
 use super::{Answer, Failure, say};
 
-/// All that there is to say.
+/// What is printed, as text or as JSON.
 #[derive(Serialize)]
 struct Report {
     /// The picture.
     a: PathBuf,
-    /// What it is compared with.
-    #[serde(flatten)]
-    with: With,
+    /// The picture that it is compared with, or the number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    b: Option<PathBuf>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    truth: Option<f64>,
     /// Width and height in pixels.
     size: [usize; 2],
-    /// The metrics and the verdict.
     #[serde(flatten)]
     comparison: Comparison,
     /// The relative difference at the ends of the heat map's scale.
     heatmap_scale: Option<f64>,
-    /// What should be known besides.
     notes: Vec<String>,
 }
 
-/// The other side.
-#[derive(Serialize)]
-#[serde(rename_all = "snake_case")]
-enum With {
-    /// A picture.
-    B(PathBuf),
-    /// A number.
-    Truth(f64),
-}
-
-/// Compares and says so.
 pub fn run(arguments: &Compare) -> Result<Answer, Failure> {
     let read = |path: &Path| Side::read(path).map_err(|error| words(&error));
     let a = read(&arguments.a)?;
@@ -100,7 +89,8 @@ fn with_picture(arguments: &Compare, a: &Side, b: &Side) -> Result<Report, Failu
     }
     Ok(Report {
         a: a.path.clone(),
-        with: With::B(b.path.clone()),
+        b: Some(b.path.clone()),
+        truth: None,
         size: [a.width, a.height],
         comparison,
         heatmap_scale,
@@ -111,7 +101,8 @@ fn with_picture(arguments: &Compare, a: &Side, b: &Side) -> Result<Report, Failu
 fn with_number(a: &Side, truth: f64) -> Report {
     Report {
         a: a.path.clone(),
-        with: With::Truth(truth),
+        b: None,
+        truth: Some(truth),
         size: [a.width, a.height],
         comparison: Comparison::with_truth(a, truth),
         heatmap_scale: None,
@@ -119,8 +110,8 @@ fn with_number(a: &Side, truth: f64) -> Report {
     }
 }
 
-/// Words about a picture whose scene has changed since. Scene files are looked for from the
-/// current directory and from those that the picture is in.
+/// A note about a picture whose scene has changed since it was rendered. Scene files are looked for
+/// from the current directory and from every directory above the picture.
 fn stale(side: &Side) -> Option<String> {
     let path = side
         .path
@@ -140,7 +131,7 @@ fn stale(side: &Side) -> Option<String> {
     }
 }
 
-/// Words about channels that only one picture has.
+/// Notes about channels that only one picture has.
 fn only_one(a: &Side, b: &Side) -> Vec<String> {
     let missing = |from: &Side, other: &Side| {
         let names: Vec<&str> = from
@@ -158,7 +149,7 @@ fn only_one(a: &Side, b: &Side) -> Vec<String> {
         .collect()
 }
 
-/// Words about paths that may be longer in one picture than in the other.
+/// A note about pictures whose paths may have different lengths.
 fn other_lengths(a: &Side, b: &Side) -> Option<String> {
     let [own, others] = [a, b].map(|side| match side.attribute("maxDepth")? {
         Attribute::Int(depth) => Some(depth.to_string()),
@@ -175,7 +166,6 @@ fn other_lengths(a: &Side, b: &Side) -> Option<String> {
     })
 }
 
-/// Why there is no verdict.
 fn why_not(a: &Side, b: Option<&Side>) -> String {
     let names: Vec<String> = std::iter::once(a)
         .chain(b)
@@ -190,14 +180,4 @@ fn why_not(a: &Side, b: Option<&Side>) -> String {
          attribute replicates, at least 2): etalon render --replicates 8 writes them",
         names.join(" and ")
     )
-}
-
-/// A difference in standard errors, for people.
-fn score(judged: &etalon::inside::compare::ChannelJudgement) -> f64 {
-    Estimate {
-        value: judged.relative_bias,
-        standard_error: judged.standard_error,
-        freedom: judged.freedom,
-    }
-    .score(0.0)
 }

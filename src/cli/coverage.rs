@@ -10,15 +10,14 @@ use etalon::{Instructions, Overrides, Scene};
 
 use super::{Answer, Failure, args, say, scene_words, threads, write};
 
-/// How many times as many samples the survey takes as a tested render: what it has not seen
-/// contributes to a tested render with a probability of a sixteenth at most, on average.
+/// Samples of the survey over those of a tested render. What the survey has not seen contributes
+/// to a tested render with a probability of a sixteenth at most, on average.
 const SURVEY_SHARE: u32 = 16;
 /// Shares of blocks between which 95 % intervals are honest.
 const HONEST: [f64; 2] = [0.93, 0.97];
 /// Edge of blocks: pictures are whole blocks where they can be.
 const BLOCK: u32 = etalon::inside::stats::blocks::EDGE as u32;
 
-/// Tests all scenes with all samplers.
 pub fn run(arguments: &args::Coverage) -> Result<Answer, Failure> {
     let pool = threads(arguments.threads)?;
     let mut table = String::from("scene,sampler,spp,enough,enough_held,few,few_held\n");
@@ -50,7 +49,7 @@ pub fn run(arguments: &args::Coverage) -> Result<Answer, Failure> {
     Ok(if honest { Answer::Good } else { Answer::No })
 }
 
-/// One scene with each sampler.
+/// Tests one scene with each sampler.
 fn test(arguments: &args::Coverage, path: &Path) -> Result<Vec<(String, Coverage)>, Failure> {
     let failed = |error| match error {
         SubjectError::Scene(error) => scene_words(&error),

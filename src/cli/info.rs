@@ -6,7 +6,6 @@ use etalon::inside::plan::explain;
 use super::args::Info;
 use super::{Answer, Failure, say};
 
-/// Describes the scene.
 pub fn run(arguments: &Info) -> Result<Answer, Failure> {
     let scene = arguments.scene.load(&[])?;
     let plan = Plan::new(&scene, arguments.plan == "full")?;

@@ -26,7 +26,7 @@ use rayon::ThreadPool;
 
 use args::{Arguments, Command};
 
-/// What a command that could be carried out has to say.
+/// The result of a command that could be carried out.
 enum Answer {
     /// Done, or yes.
     Good,
@@ -40,7 +40,6 @@ type Failure = Box<dyn Error + Send + Sync>;
 /// Exit code of a command that could not be carried out.
 const COULD_NOT: u8 = 2;
 
-/// Runs the command that the arguments ask for.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
@@ -81,7 +80,7 @@ fn show(message: &clap::Error) -> ExitCode {
     }
 }
 
-/// What a scene complains of; arguments are called as they are typed.
+/// What is wrong with a scene; arguments are named as they are typed.
 fn scene_words(error: &SceneError) -> String {
     let Some(diagnostic) = error.diagnostic() else {
         return error.to_string();
@@ -93,7 +92,6 @@ fn scene_words(error: &SceneError) -> String {
     diagnostic.to_string()
 }
 
-/// The threads to work with.
 fn threads(count: Option<NonZeroUsize>) -> Result<ThreadPool, Failure> {
     // 0 stands for one a thread of the machine.
     let count = count.map_or(0, NonZeroUsize::get);
@@ -101,7 +99,7 @@ fn threads(count: Option<NonZeroUsize>) -> Result<ThreadPool, Failure> {
     Ok(pool.map_err(|reason| format!("cannot start the threads: {reason}"))?)
 }
 
-/// A word as a shell takes it.
+/// A word quoted for a shell.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_./=,:+@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
@@ -111,14 +109,14 @@ fn quoted(word: &str) -> String {
     }
 }
 
-/// Lines on stdout.
+/// Prints lines to stdout.
 fn say(text: &str) -> Result<(), Failure> {
     let mut output = io::stdout().lock();
     writeln!(output, "{text}")?;
     Ok(output.flush()?)
 }
 
-/// A line on stderr; a closed stderr is no reason to stop.
+/// Prints a line to stderr; a closed stderr is no reason to stop.
 fn tell(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
 }

@@ -15,7 +15,6 @@ use super::{Answer, Failure, say, scene_words, tell, threads};
 pub use job::Job;
 pub use report::percent;
 
-/// Renders the scene as asked for.
 pub fn run(arguments: &Render) -> Result<Answer, Failure> {
     let mut jobs = jobs(arguments)?;
     for job in &jobs {

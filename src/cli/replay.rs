@@ -9,7 +9,6 @@ use glam::DVec3;
 use super::args::Replay;
 use super::{Answer, Failure, say};
 
-/// Follows the path asked for.
 pub fn run(arguments: &Replay) -> Result<Answer, Failure> {
     let scene = arguments.scene.load(&[("seed", &arguments.seed)])?;
     let [x, y] = arguments.pixel;

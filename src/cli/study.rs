@@ -14,23 +14,23 @@ use etalon::inside::study::{StudyError, choice, report};
 use super::progress::{Studying, listen};
 use super::{Answer, Failure, args, quoted, say, scene_words, tell, threads, write};
 
-/// Carries out a study, or goes on with one, and draws what there is.
+/// Carries out a study, or goes on with one, and draws its charts.
 pub fn run(arguments: &args::Study) -> Result<Answer, Failure> {
     let threads = threads(arguments.threads)?;
     listen();
     let request = request(arguments, threads.current_num_threads() as u32);
     let study = threads.install(|| run_study(&request, &mut Studying::new(arguments.quiet)));
-    let study = study.map_err(|error| said(&error))?;
+    let study = study.map_err(|error| words(&error))?;
     publish(&request, &study)?;
-    say(&said_of(&request, &study))?;
+    say(&summary(&request, &study))?;
     if !study.complete && !arguments.quiet {
         tell("note: interrupted; the same command goes on where this one stopped");
     }
     Ok(Answer::Good)
 }
 
-/// What a study complains of, and what to type instead.
-fn said(error: &StudyError) -> String {
+/// Why a study failed, and what to type instead.
+fn words(error: &StudyError) -> String {
     match error {
         StudyError::OneReplicate => format!("--replicates: {error}"),
         StudyError::Subject(SubjectError::Scene(scene)) => scene_words(scene),
@@ -77,6 +77,7 @@ fn request(arguments: &args::Study, threads: u32) -> Request {
         let panel = scene.panel.iter().map(|panel| format!("-{panel}"));
         PathBuf::from(format!("{name}{}-study", panel.collect::<String>()))
     });
+    let words = std::env::args().skip(1).map(|word| quoted(&word));
     Request {
         subject: Subject {
             path: scene.scene.clone(),
@@ -89,14 +90,8 @@ fn request(arguments: &args::Study, threads: u32) -> Request {
         budget: arguments.budget.as_secs_f64(),
         threads,
         directory,
-        command: command_line(),
+        command: format!("etalon {}", words.collect::<Vec<_>>().join(" ")),
     }
-}
-
-/// The command as it could be typed again.
-fn command_line() -> String {
-    let words = std::env::args().skip(1).map(|word| quoted(&word));
-    format!("etalon {}", words.collect::<Vec<_>>().join(" "))
 }
 
 /// Draws the charts and writes the report.
@@ -137,8 +132,8 @@ pub fn write_chart(base: &Path, svg: &str) -> Result<PathBuf, Failure> {
     Ok(path)
 }
 
-/// What was found, for people.
-fn said_of(request: &Request, study: &Study) -> String {
+/// The result in lines: each curve, the reference, the report's place.
+fn summary(request: &Request, study: &Study) -> String {
     let abscissa = study.grid.abscissa.key;
     let curves = curves(&study.rows, abscissa);
     let mut lines: Vec<String> = curves.iter().map(|curve| line(curve, abscissa)).collect();
@@ -157,7 +152,7 @@ fn said_of(request: &Request, study: &Study) -> String {
     lines.join("\n")
 }
 
-/// How well the reference is known beside the best point.
+/// How well the reference is known, compared with the best point.
 fn known(study: &Study, curves: &[Curve]) -> String {
     let own = study.reference.rmse();
     if own == 0.0 {

@@ -22,7 +22,6 @@ const PIECE: usize = 1 << 10;
 /// Pieces read before they are worked on, enough for the threads of a large machine.
 const PIECES: usize = 256;
 
-/// Prints the first hit of each ray.
 pub fn run(arguments: &Trace) -> Result<Answer, Failure> {
     let tracer = Tracer::new(&arguments.scene.load(&[])?)?;
     let mut lines = Lines::open(&arguments.rays)?;
@@ -158,7 +157,7 @@ fn push_field(text: &mut String, field: &str) {
     }
 }
 
-/// Who has decided what, for stderr.
+/// How many rays and questions each arithmetic has decided, for stderr.
 fn summary(decided: &Decided) -> String {
     let Decided {
         rays,

@@ -3,24 +3,18 @@
 use std::fmt::Write as _;
 
 use etalon::inside::stats::metrics::Metric;
-use etalon::{Judgement, Metrics};
+use etalon::{Estimate, Judgement, Metrics};
 
-use super::{Report, With, score};
+use super::Report;
 
-/// The whole report.
+/// The report as tables and notes.
 pub fn text(report: &Report) -> String {
-    let [width, height] = report.size;
-    let mut text = match &report.with {
-        With::B(b) => format!(
-            "{} against {}, {width}x{height} pixels\n",
-            report.a.display(),
-            b.display()
-        ),
-        With::Truth(truth) => format!(
-            "the mean of {} against {truth}, {width}x{height} pixels\n",
-            report.a.display()
-        ),
+    let ([width, height], a) = (report.size, report.a.display());
+    let sides = match (&report.b, report.truth) {
+        (Some(b), _) => format!("{a} against {}", b.display()),
+        (None, truth) => format!("the mean of {a} against {}", truth.unwrap_or_default()),
     };
+    let mut text = format!("{sides}, {width}x{height} pixels\n");
     push_metrics(&mut text, report);
     if let Some(judgement) = &report.comparison.judgement {
         push_judgement(&mut text, judgement);
@@ -151,13 +145,18 @@ fn push_judgement(text: &mut String, judgement: &Judgement) {
                 blocks.distribution_p_value
             )
         });
+        let bias = Estimate {
+            value: channel.relative_bias,
+            standard_error: channel.standard_error,
+            freedom: channel.freedom,
+        };
         let _ = writeln!(
             text,
             "{:<20} {:>10.4} % {:>10.4} % {:>+7.1} {:>9.2e} {:>20.4} % {blocks}",
             channel.channel,
             100.0 * channel.relative_bias,
             100.0 * channel.standard_error,
-            score(channel),
+            bias.score(0.0),
             channel.p_value,
             100.0 * channel.smallest_caught,
         );
@@ -167,14 +166,10 @@ fn push_judgement(text: &mut String, judgement: &Judgement) {
             let _ = writeln!(text, "{}: {words}", channel.channel);
         }
     }
-    let (verdict, level) = (judgement.consistent, judgement.level);
-    let verdict = if verdict {
-        "consistent"
-    } else {
-        "NOT consistent"
-    };
+    let not = if judgement.consistent { "" } else { "NOT " };
     let _ = writeln!(
         text,
-        "{verdict} (honest pictures are called inconsistent with probability {level:.0e})"
+        "{not}consistent (honest pictures are called inconsistent with probability {:.0e})",
+        judgement.level
     );
 }

@@ -10,7 +10,6 @@ use super::super::args::Render;
 use super::super::values::Layer;
 use super::super::{Failure, scene_words};
 
-/// One picture to render.
 pub struct Job {
     pub render: etalon::Render,
     /// The OpenEXR file.
@@ -20,7 +19,7 @@ pub struct Job {
 }
 
 impl Job {
-    /// Reads and plans.
+    /// Reads the scene and plans it.
     pub fn new(arguments: &Render, panel: Option<&str>) -> Result<Self, Failure> {
         let overrides = Overrides {
             panel: panel.map(str::to_owned),
@@ -64,7 +63,6 @@ impl Job {
         Ok(job)
     }
 
-    /// Checks that the picture fits into memory.
     pub fn check_memory(&self) -> Result<(), Failure> {
         let checked = self.render.check_memory();
         Ok(checked.map_err(|error| {
@@ -79,7 +77,7 @@ impl Job {
     }
 }
 
-/// The OpenEXR file and the preview.
+/// Paths of the OpenEXR file and of the preview.
 fn paths(arguments: &Render, panel: Option<&str>) -> Result<(PathBuf, Option<PathBuf>), Failure> {
     let all = arguments.scene.panel.as_deref() == Some("all");
     let scene = &arguments.scene.scene;

@@ -1,4 +1,4 @@
-//! What a render has to say at its end.
+//! What is printed when a render has ended.
 
 use std::fmt::Write as _;
 

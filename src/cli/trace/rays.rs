@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::Failure;
 
-/// The columns that mean something; the first six must be there.
+/// The columns that have a meaning; the first six are required.
 const COLUMNS: [&str; 9] = ["ox", "oy", "oz", "dx", "dy", "dz", "tmin", "tmax", "id"];
 const REQUIRED: usize = 6;
 const HEADING: &str = "a heading that names ox,oy,oz,dx,dy,dz and at will id,tmin,tmax";
@@ -16,10 +16,10 @@ const T_MIN: usize = 6;
 const T_MAX: usize = 7;
 const ID: usize = 8;
 
-/// Nothing sensible is longer, and no file without line ends fills the memory.
+/// Longest line accepted, bytes, so that a file without line ends cannot fill the memory.
 const LONGEST_LINE: u64 = 1 << 20;
 
-/// One line of text, not yet taken apart.
+/// One line of text, not yet split into fields.
 pub struct Line {
     text: String,
     /// Counted from 1, heading included.
@@ -28,20 +28,20 @@ pub struct Line {
     row: u64,
 }
 
-/// A ray and what it is called.
+/// A ray and its name.
 pub struct RayRow {
     /// As written, or the number of the row, counted from 0.
     pub id: String,
     pub query: Query,
 }
 
-/// What the heading says.
+/// The meaning of each column, from the heading.
 pub struct Table {
     file: String,
     width: usize,
     /// Field of each of [`COLUMNS`].
     fields: [Option<usize>; COLUMNS.len()],
-    /// Columns that mean nothing here.
+    /// Columns without a meaning.
     pub ignored: Vec<String>,
 }
 
@@ -57,7 +57,7 @@ fn unreadable(file: &str, reason: &io::Error) -> String {
     format!("cannot read {file}: {reason}")
 }
 
-/// What is wrong at a line, in a column perhaps, and what would have been right.
+/// Names the place of a mistake, and what would have been right there.
 fn malformed(
     (file, line): (&str, u64),
     column: Option<usize>,
@@ -168,7 +168,7 @@ impl Table {
         }
     }
 
-    /// Takes a line apart.
+    /// Reads a ray.
     pub fn ray(&self, line: &Line) -> Result<RayRow, Failure> {
         let fields = split(&line.text);
         let place = (self.file.as_str(), line.number);
