@@ -29,7 +29,7 @@ const MOST: usize = 32;
 /// 1.4 times the normal one.)
 const LEAST_FREEDOM: f64 = 20.0;
 
-/// What the tests say.
+/// The verdict of all tests.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Judgement {
@@ -37,61 +37,60 @@ pub struct Judgement {
     pub consistent: bool,
     /// Probability of a false alarm of all tests together.
     pub level: f64,
-    /// By channel.
+    /// The tests of each channel.
     pub channels: Vec<ChannelJudgement>,
 }
 
-/// What the tests say of a channel.
+/// The tests of a channel.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ChannelJudgement {
-    /// Its name.
+    /// Name of the channel.
     pub channel: String,
-    /// Mean of the first picture minus that of the second, over the second's (over nothing where
-    /// that is 0).
+    /// Mean of the first picture minus that of the second, divided by the second's unless that is 0.
     pub relative_bias: f64,
-    /// Its standard error, from the variances of both.
+    /// Standard error of the bias, from the variances of both.
     pub standard_error: f64,
-    /// Degrees of freedom of that.
+    /// Degrees of freedom of the standard error.
     pub freedom: f64,
     /// Two-sided p-value of the mean.
     pub p_value: f64,
     /// Smallest relative bias of the image mean that would have been caught, 39 times in 40.
     pub smallest_caught: f64,
-    /// The blocks; `None` against a number.
+    /// The tests of the blocks; `None` against a number.
     pub blocks: Option<BlockJudgement>,
-    /// Words for each test that rejects.
+    /// A sentence for each test that rejects.
     pub rejected: Vec<String>,
 }
 
-/// What the tests say of a channel's blocks.
+/// The tests of a channel's blocks.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct BlockJudgement {
-    /// Blocks with enough degrees of freedom.
+    /// Number of blocks with enough degrees of freedom to be tested.
     pub count: usize,
-    /// Blocks without.
+    /// Number of blocks with too few.
     pub left_out: usize,
     /// Edge in pixels.
     pub edge: usize,
     /// Corner of the block that differs most.
     pub worst: Option<[usize; 2]>,
-    /// Its difference in standard errors.
+    /// Difference of that block in standard errors.
     pub worst_score: f64,
-    /// Its p-value, alone.
+    /// p-value of that block alone.
     pub worst_p_value: f64,
-    /// p-value of the distribution of all.
+    /// p-value of the distribution of all blocks.
     pub distribution_p_value: f64,
 }
 
 /// Where a channel of two pictures is compared: a square of pixels, small enough to see where they
 /// differ, large enough that its means are nearly normal; smaller at the right and lower border.
 struct Block {
-    /// Its first column and row.
+    /// First column and row.
     corner: [usize; 2],
     /// The first picture's mean minus the second's.
     difference: Estimate,
-    /// The second's mean.
+    /// Mean of the second picture.
     reference: f64,
 }
 

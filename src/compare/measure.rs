@@ -6,19 +6,20 @@ use crate::stats::metrics::{
     Metric, mean, mean_error, mean_over_channels, relative_mean_error, relmse, rmse, smape,
 };
 
-/// All metrics of a channel, or of several.
+/// The metrics of a channel, or their means over several.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Metrics {
     /// Signed mean error, in the unit of the channel.
     pub mean_error: Metric,
-    /// The same over the reference's mean.
+    /// Mean error over the reference's mean.
     pub relative_mean_error: Metric,
     /// Root of the mean squared error.
     pub rmse: Metric,
     /// Relative mean squared error.
     pub relmse: Metric,
-    /// The same without the share of the reference's own variance, where that is known.
+    /// Relative mean squared error without the share of the reference's own variance, where that is
+    /// known.
     pub relmse_without_reference_variance: Option<Metric>,
     /// Symmetric mean absolute percentage error, as a fraction.
     pub smape: Metric,
@@ -28,11 +29,11 @@ pub struct Metrics {
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ChannelMetrics {
-    /// Its name.
+    /// Name of the channel.
     pub channel: String,
-    /// Means of both pictures.
+    /// Means of the picture and of the reference.
     pub means: [f64; 2],
-    /// The metrics.
+    /// The picture's errors against the reference.
     pub metrics: Metrics,
 }
 

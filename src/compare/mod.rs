@@ -1,8 +1,8 @@
 //! Picture against picture, or against a number: how far they are apart, and whether noise alone
-//! explains it.
+//! explains the difference.
 //!
-//! A [`Side`] is what is known of one picture: means and variances by channel and pixel. From two
-//! sides come the [`metrics`](crate::stats::metrics), and, where both know their variances, a
+//! A [`Side`] holds one picture's means and variances by channel and pixel. Two sides have
+//! [`metrics`](crate::stats::metrics) and, where the variances of both are known, a
 //! [`Judgement`]: image means by channel, block by block, and the distribution of all blocks, at
 //! one level for the whole family; a [`Comparison`] is all of it. [`stale`] finds references whose
 //! scene has changed since.
@@ -37,7 +37,7 @@ pub enum CompareError {
         /// The file.
         path: PathBuf,
     },
-    /// Values that are not numbers.
+    /// Values that are infinite or not numbers.
     #[error(
         "{} has {count} values that are not finite in channel {channel}, the first at pixel {},{}",
         path.display(), first[0], first[1]
@@ -47,13 +47,13 @@ pub enum CompareError {
         path: PathBuf,
         /// The channel.
         channel: String,
-        /// How many.
+        /// Number of such values.
         count: usize,
         /// Column and row of the first.
         first: [usize; 2],
     },
-    /// Variances that are negative or not numbers in places.
-    #[error("{} has a variance or standard error that is none in channel {channel}", path.display())]
+    /// Variances of which some are negative, infinite or not numbers.
+    #[error("{} has a variance or standard error that is negative or not finite in channel {channel}", path.display())]
     Variance {
         /// The file.
         path: PathBuf,
@@ -71,7 +71,7 @@ pub enum CompareError {
         /// Width and height of each.
         sizes: [[usize; 2]; 2],
     },
-    /// No channel in both.
+    /// Pictures without a common channel.
     #[error(
         "{} and {} share no channel: the first has {}, the second {}",
         paths[0].display(), paths[1].display(), names[0], names[1]
@@ -79,7 +79,7 @@ pub enum CompareError {
     NothingShared {
         /// The files.
         paths: [PathBuf; 2],
-        /// Their channels.
+        /// The channels of each, separated by commas.
         names: [String; 2],
     },
 }
@@ -113,7 +113,7 @@ impl Comparison {
         )
     }
 
-    /// The same of sides, such as files.
+    /// Compares two sides, such as files.
     ///
     /// # Errors
     /// [`CompareError`] for sides of different sizes or without a common channel.

@@ -1,4 +1,4 @@
-//! What is known of one picture.
+//! One picture of a comparison.
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ pub struct Side {
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// R, G, B and spectral bands, as far as they are there.
+    /// R, G, B and spectral bands, as far as the picture has them.
     pub channels: Vec<Channel>,
     /// Degrees of freedom of each variance; `None` where no variances are known.
     pub freedom: Option<f64>,
@@ -27,7 +27,7 @@ pub struct Side {
 /// A channel with the variances of its values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
-    /// Its name in the file.
+    /// Name in the file.
     pub name: String,
     /// Values, row by row.
     pub values: Vec<f64>,
@@ -45,10 +45,10 @@ impl Side {
         Self::of_picture(path, exr::read(path)?)
     }
 
-    /// Of a picture already read from `path`.
+    /// Takes a picture already read from `path`.
     ///
     /// # Errors
-    /// As [`Side::read`], but for the reading.
+    /// [`CompareError`] for pictures that hold nothing to compare, or values that are not numbers.
     pub fn of_picture(path: &Path, picture: Picture) -> Result<Self, CompareError> {
         let is_value = |name: &str| names::RGB.contains(&name) || wavelength(name).is_some();
         let values = picture.channels.iter().map(|channel| &channel.name);

@@ -100,7 +100,6 @@ impl Picture {
     }
 }
 
-/// The picture as the `exr` crate wants it.
 fn to_image(picture: &Picture) -> Image<Layer<AnyChannels<FlatSamples>>> {
     let channels = picture.channels.iter().map(|channel| {
         let samples = match &channel.values {
@@ -127,7 +126,6 @@ fn to_image(picture: &Picture) -> Image<Layer<AnyChannels<FlatSamples>>> {
     image
 }
 
-/// A picture out of what the `exr` crate read.
 fn from_image(image: FlatImage) -> Result<Picture, String> {
     let display = image.attributes.display_window;
     let mut layers: Layers<AnyChannels<FlatSamples>> = image.layer_data;
@@ -163,7 +161,6 @@ fn from_image(image: FlatImage) -> Result<Picture, String> {
     Ok(picture)
 }
 
-/// An attribute for the file.
 fn to_value(attribute: &Attribute) -> AttributeValue {
     match attribute {
         Attribute::Text(value) => AttributeValue::Text(text(value)),

@@ -1,8 +1,8 @@
 //! Pictures and the files they are kept in: OpenEXR with everything, PNG to look at.
 //!
 //! A [`Picture`] is named channels over one grid of pixels, and attributes that say where they
-//! come from. [`exr`] writes and reads it without loss, [`png`] shows its R, G, B, [`whole`] sees
-//! to it that a file appears complete or not at all.
+//! come from. [`exr`] writes and reads it without loss, [`png`] shows its R, G, B, [`whole`] makes
+//! sure that a file appears complete or not at all.
 
 pub mod attribute_order;
 pub mod exr;
@@ -25,16 +25,16 @@ pub struct Picture {
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// The channels; their names differ.
+    /// Channels of different names.
     pub channels: Vec<Channel>,
-    /// Names and values of the custom attributes; the names differ.
+    /// Names and values of the custom attributes; no name occurs twice.
     pub attributes: Vec<(String, Attribute)>,
 }
 
 /// One number per pixel, with a name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
-    /// The name as other programs see it; a dot separates layer and component.
+    /// Name in the file; a dot separates layer and component.
     pub name: String,
     /// `width` × `height` values, rows from the top, each from the left.
     pub values: Values,
@@ -140,8 +140,8 @@ impl Picture {
         }
     }
 
-    /// Adds three floating-point channels, one for each suffix, of a value with three components:
-    /// `("", RGB)` gives R, G, B and `("N", XYZ)` gives N.X, N.Y, N.Z.
+    /// Adds a floating-point channel for each component of a value: `("", RGB)` gives R, G, B and
+    /// `("N", XYZ)` gives N.X, N.Y, N.Z.
     pub fn push_triple(&mut self, layer: &str, components: [&str; 3], values: &[[f32; 3]]) {
         for (index, component) in components.into_iter().enumerate() {
             let plane = values.iter().map(|value| value[index]).collect();
@@ -183,8 +183,8 @@ impl Picture {
     /// Checks that the picture is consistent and that its names fit the file format.
     ///
     /// # Errors
-    /// A sentence about the first fault: no pixels or channels, a channel of another length, a
-    /// name that is empty, too long, not plain or used twice.
+    /// A description of the first fault: no pixels or channels, a channel of another length, a
+    /// name that is empty, too long, not plain ASCII or used twice.
     pub fn check(&self) -> Result<(), String> {
         let Some(pixels) = self.width.checked_mul(self.height).filter(|&n| n > 0) else {
             let (width, height) = (self.width, self.height);

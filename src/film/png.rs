@@ -8,7 +8,7 @@
 //!    and approaches 1 above it; the others keep their ratio to it, and so the hue.
 //! 4. *Encoding*: the sRGB transfer function (IEC 61966-2-1:1999, 5.2), rounded to nearest.
 //!
-//! A pixel that is not finite is painted pure magenta, to be seen rather than hidden.
+//! A pixel that is not finite is painted pure magenta, so that it shows.
 
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -19,13 +19,12 @@ use image::{ExtendedColorType, ImageEncoder, ImageError};
 use super::{Error, whole};
 use crate::spectrum::observer::luminance;
 
-/// Part of the finite pixels that may be brighter than white.
+/// Share of the finite pixels that may be brighter than white.
 const BRIGHTEST: f64 = 0.01;
 /// A picture is lightened until its percentile reaches this, the usual mid-grey of 18 %.
 const MID_GREY: f64 = 0.18;
 /// Where the tone curve leaves the identity: white (1) comes to lie at 0.9, its middle.
 const KNEE: f64 = 0.8;
-/// What pixels that are not finite are painted.
 const NOT_FINITE: [u8; 3] = [255, 0, 255];
 
 /// Writes a preview of `width` × `height` linear Rec. 709 colours, rows from the top, whole or
@@ -85,7 +84,8 @@ pub fn write_bytes(
 }
 
 /// The factor a picture is exposed by: 1 while the 99th percentile of its luminance lies between
-/// mid-grey (0.18) and white (1); otherwise what brings it to the nearer of the two.
+/// mid-grey (0.18) and white (1); otherwise the factor that takes the percentile to the nearer of
+/// the two.
 ///
 /// The percentile is the luminance of rank ⌈0.99 n⌉ among the n finite pixels. A picture that is
 /// black there keeps exposure 1.
@@ -125,7 +125,6 @@ pub fn encode(rgb: [f32; 3], exposure: f64) -> [u8; 3] {
     inside.map(|component| quantize(transfer(component / largest * curve)))
 }
 
-/// Whether all components are finite.
 fn is_finite(rgb: [f32; 3]) -> bool {
     rgb.into_iter().all(f32::is_finite)
 }

@@ -22,13 +22,13 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes the temporary files that are being filled, for a program about to end at once; no file
-/// takes its name any more while the result is kept.
+/// Removes the temporary files that are being filled, for a program about to end at once; while
+/// the result is kept, no temporary file takes the name of its target.
 #[must_use]
 pub fn abandon() -> impl Sized {
     let unfinished = unfinished();
     for path in unfinished.iter() {
-        // Nobody is left to be told of a file that cannot be removed.
+        // The program ends: a file that cannot be removed is nobody's concern.
         let _ = fs::remove_file(path);
     }
     unfinished

@@ -33,19 +33,19 @@ pub struct Shares {
     shares: Vec<(u32, f64)>,
 }
 
-/// Why bins cannot be had.
+/// Why there can be no such bins.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum BinError {
     /// A bin reaches out of the wavelengths that paths carry.
     #[error("the bin at {centre} nm reaches out of {SHORTEST} nm to {LONGEST} nm")]
     Outside {
-        /// Its middle, nm.
+        /// Middle of the bin, nm.
         centre: f64,
     },
     /// Not positive, not finite, or more bins than there are cells.
     #[error("the bins' width of {width} nm is not one of at most {CELLS} bins")]
     Width {
-        /// What was asked for, nm.
+        /// Width asked for, nm.
         width: f64,
     },
 }
@@ -81,7 +81,7 @@ impl BinGrid {
         &self.centres
     }
 
-    /// How they share the cells of a grid.
+    /// How the bins share the cells of a grid.
     pub fn shares(&self, grid: &WavelengthGrid) -> Shares {
         let half = self.width / 2.0;
         let mut starts = vec![0];
@@ -158,8 +158,8 @@ impl Bins {
         }
     }
 
-    /// Radiance of a pixel in a bin, W·m⁻²·sr⁻¹·nm⁻¹; its replicates have as many samples as `counts`
-    /// says.
+    /// Radiance of a pixel in a bin, W·m⁻²·sr⁻¹·nm⁻¹; `counts` are the numbers of samples of the
+    /// replicates.
     pub fn estimate(&self, pixel: usize, bin: usize, counts: &[f64]) -> Estimate<1> {
         let count = self.shares.bins;
         let sums = &self.sums[pixel * self.slots * count..][..self.slots * count];

@@ -1,4 +1,4 @@
-//! What a picture is made of: a scene, its plan, and how much of it is wanted.
+//! A picture to be rendered: a scene, its plan, and what is wanted of it.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ use crate::plan::explain::explain;
 use crate::plan::{Plan, PlanError};
 use crate::scene::Scene;
 
-/// Samples a pixel at most: as many as the samplers' points.
+/// Most samples a pixel: as many as the samplers have points.
 pub const MOST_SAMPLES: u32 = 1 << 24;
 
 /// A picture to be made of a scene: all of it, until the scene's samples are done, unless fields
@@ -48,7 +48,7 @@ impl Render {
         Ok(Self::planned(scene, plan))
     }
 
-    /// Takes a plan that was made of this very scene.
+    /// Takes a plan that was made of the same scene.
     pub fn planned(scene: Scene, plan: Plan) -> Self {
         Self {
             scene,
@@ -75,17 +75,17 @@ impl Render {
         Ok(self)
     }
 
-    /// The scene.
+    /// The scene as it is rendered.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// What is done about it.
+    /// How the scene is rendered.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
 
-    /// What is done about the scene, and why, line by line.
+    /// How the scene is rendered, and why, line by line.
     pub fn explain(&self) -> Vec<String> {
         explain(&self.scene, &self.plan)
     }
@@ -100,7 +100,7 @@ impl Render {
         self.goal
     }
 
-    /// The pixels wanted.
+    /// The pixels wanted: the crop, or the whole picture.
     pub fn window(&self) -> Window {
         self.crop
             .unwrap_or_else(|| Window::whole(self.scene.image.size))
@@ -118,7 +118,7 @@ impl Render {
         self.run_watched(&mut Unwatched)
     }
 
-    /// Renders and tells of it after each pass.
+    /// As [`run`](Self::run), with a call of `progress` after each pass.
     pub fn run_watched(&self, progress: &mut dyn Progress) -> Rendered {
         let request = Request {
             window: self.window(),
@@ -142,8 +142,8 @@ impl Render {
         Ok(())
     }
 
-    /// Bytes that it takes at the end: the sums of each pixel, the estimate made of them, and what
-    /// goes to the file, of which the writer makes a copy.
+    /// Bytes of the finished picture: the sums of each pixel, the estimate made of them, and the
+    /// channels of the file, of which the writer makes a copy.
     fn memory(&self) -> u64 {
         // R, G, B, their standard errors, and the count of samples.
         const CHANNELS: usize = 7;
@@ -195,8 +195,8 @@ impl Render {
         failed.map_or(Ok(chosen), Err)
     }
 
-    /// A render of this many samples a pixel with the seed of this pilot; `None` where it was
-    /// stopped.
+    /// Renders this many samples a pixel with the seed of pilot `number`; `None` where `progress`
+    /// stopped it.
     fn pilot(
         &mut self,
         samples: u32,

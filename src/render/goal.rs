@@ -1,4 +1,4 @@
-//! How many samples a wanted error takes, without letting the answer bend the picture.
+//! How many samples a wanted error takes, chosen without bias in the picture.
 //!
 //! A render that stops when its own samples say that it is good stops early where they happen to
 //! agree, and so is biased (D. Kirk and J. Arvo, "Unbiased Sampling Techniques for Image
@@ -8,21 +8,21 @@
 use super::session::Rendered;
 use crate::stats::blocks;
 
-/// What the wanted error is an error of.
+/// The quantity whose error is wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
     /// The mean luminance of the picture.
     Image,
-    /// The mean luminance of its worst block of 8 × 8 pixels.
+    /// The mean luminance of the picture's worst block of 8 × 8 pixels.
     Block,
 }
 
-/// What is wanted.
+/// A wanted error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
-    /// Of what.
+    /// The quantity.
     pub target: Target,
-    /// Standard error over value.
+    /// Standard error of the quantity over its value.
     pub error: f64,
 }
 
@@ -39,10 +39,10 @@ pub struct Chosen {
 
 /// Samples a pixel of the smallest pilot: enough for two replicates of a few points each.
 const FIRST: u32 = 8;
-/// Camera paths of the smallest pilot of a picture: what one path in ten thousand brings is seen by
-/// it but for one case in 700 (0.9999^65536), and it takes milliseconds.
+/// Camera paths of the smallest pilot of a picture, which takes milliseconds: light that one path in
+/// ten thousand brings is missed in one case of 700 (0.9999^65536).
 const PATHS: u32 = 1 << 16;
-/// How much larger the next pilot is at most.
+/// Samples of a pilot over those of the one before, at most.
 const GROWTH: f64 = 4.0;
 
 impl Target {
@@ -72,13 +72,13 @@ impl Target {
 const FREEDOM: f64 = 16.0;
 /// Renders of a pilot at most: a variance that rare paths bear would go on without end.
 const RENDERS: u32 = 16;
-/// A pilot will do that is so much smaller than it was meant to be.
+/// A pilot is large enough if it is smaller than it was meant to be by no more than this factor.
 const SLACK: f64 = 1.5;
 /// Slopes of the standard error over samples: independent samples have −1/2, and no sampler here
 /// falls faster than −1 for long (smooth integrands, strata: Mitchell 1996).
 const SLOPES: [f64; 2] = [-1.0, -0.5];
 
-/// Standard error over mean of what is aimed at; NaN where there is none.
+/// Standard error over mean of the quantity in a finished render; NaN where it is not known.
 pub fn reached(rendered: &Rendered, target: Target) -> f64 {
     let mut pilot = Pilot::default();
     pilot.add(rendered, target);
@@ -139,14 +139,14 @@ fn times(wanted: f64, (samples, error): (u32, f64), before: Option<(u32, f64)>) 
     libm::pow(wanted / error, 1.0 / slope)
 }
 
-/// What renders of a pilot say of one place.
+/// Sums over the renders of a pilot for one place: the whole picture or a block.
 #[derive(Debug, Clone, Copy, Default)]
 struct Place {
     /// Sum of the pixels' luminances.
     total: f64,
     /// Sum of their variances.
     variance: f64,
-    /// Sum of the squares of these.
+    /// Sum of the squares of the variances.
     square: f64,
 }
 
@@ -159,14 +159,14 @@ struct Relative {
 }
 
 impl Relative {
-    /// Of what is known exactly.
+    /// The error of a value that is known exactly.
     const NONE: Self = Self {
         square: 0.0,
         freedom: f64::INFINITY,
     };
 }
 
-/// Renders of equally many samples, joined: one place, or one a block.
+/// Joined renders of equally many samples: one place for the picture, or one for each block.
 #[derive(Debug, Default)]
 struct Pilot {
     places: Vec<Place>,
@@ -212,7 +212,7 @@ impl Pilot {
         })
     }
 
-    /// Of one render's place; a black one has no error.
+    /// The error of one render of a place; a place without variance has none.
     fn relative(&self, place: &Place) -> Relative {
         if place.variance == 0.0 {
             return Relative::NONE;

@@ -1,4 +1,4 @@
-//! From sums to a picture: channels, standard errors, and where it comes from.
+//! From sums to a picture: channels, standard errors and provenance.
 
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ use crate::plan::choose::Precision;
 
 impl Render {
     /// The picture of what [`run`](Self::run) has rendered: R, G, B and their standard errors, the
-    /// count of samples, the layers asked for, and all that it takes to make it again.
+    /// count of samples, the layers asked for, and everything needed to render it again.
     ///
     /// # Errors
     /// [`Singular`] where layers are wanted of an object whose matrix has no inverse.
@@ -40,7 +40,7 @@ impl Render {
         Ok(picture)
     }
 
-    /// Where the picture comes from: enough to make it again, and what is known about its error.
+    /// Everything needed to render the picture again, and what is known about its error.
     ///
     /// What does not apply is absent, but an absent limit of the path length is said as the text
     /// "unlimited"; whole numbers that need more than 31 bits, and the seed always, are decimal text.
@@ -124,7 +124,7 @@ impl Render {
     }
 }
 
-/// Who has decided the rays, as shares.
+/// Shares of rays and questions that each arithmetic has decided.
 fn rungs(rungs: &Rungs, precision: Precision) -> String {
     let share = |part: u64, whole: u64| part as f64 / whole.max(1) as f64;
     let ladder = rungs.ladder;

@@ -1,4 +1,4 @@
-//! From plan to picture: passes until enough, and what was measured on the way.
+//! Rendering in passes over all tiles, and the estimates made of their sums.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -35,14 +35,14 @@ pub struct Request<'a> {
     pub bins: Option<&'a BinGrid>,
 }
 
-/// What a render tells while it runs, between passes; returning `false` stops it.
+/// Watches a render between its passes, and may stop it.
 pub trait Progress {
-    /// Called after each pass with the samples done, the samples wanted, the time spent and the
-    /// standard error of the mean luminance relative to it, where known.
+    /// Called after each pass with the samples a pixel done and wanted, the time spent, and the
+    /// standard error of the mean luminance over the mean, where it is known; `false` stops the render.
     fn passed(&mut self, done: u32, wanted: u32, spent: Duration, error: Option<f64>) -> bool;
 }
 
-/// Progress that nobody watches.
+/// Never stops a render.
 #[derive(Debug, Clone, Copy)]
 pub struct Unwatched;
 
@@ -59,13 +59,13 @@ pub struct Rendered {
     pub window: Window,
     /// Samples a pixel.
     pub samples: u32,
-    /// Seconds in passes.
+    /// Wall-clock seconds of all passes.
     pub seconds: f64,
-    /// Which arithmetic decided the rays.
+    /// Number of rays that each arithmetic decided.
     pub rungs: Rungs,
     /// Samples left out because they were not numbers.
     pub not_a_number: u64,
-    /// The first of them, to be replayed.
+    /// The first sample left out, to be replayed.
     pub first_not_a_number: Option<chunk::Request>,
     replicates: Replicates,
     tiles: Vec<Tile>,
