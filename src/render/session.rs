@@ -213,13 +213,11 @@ impl Rendered {
 
     /// Luminance of every pixel, row by row, in each of its replicates.
     pub fn replicate_luminances(&self) -> Vec<Vec<f64>> {
-        let mut image = vec![Vec::new(); self.window.pixels()];
         let counts = self.counts();
-        self.place(|index, tile, pixel| {
+        self.image(Vec::new(), |tile, pixel| {
             let means = tile.pixels.replicate_means(pixel, &counts);
-            image[index] = means.map(|xyz| xyz[1]).collect();
-        });
-        image
+            means.map(|xyz| xyz[1]).collect()
+        })
     }
 
     /// Replicates that every pixel has.
@@ -239,24 +237,19 @@ impl Rendered {
         })
     }
 
-    /// A value for each pixel, row by row.
-    fn image<V: Copy>(&self, empty: V, value: impl Fn(&Tile, usize) -> V) -> Vec<V> {
+    /// The values that a tile has for its own pixels, for every pixel of the image, row by row.
+    fn image<V: Clone>(&self, empty: V, value: impl Fn(&Tile, usize) -> V) -> Vec<V> {
         let mut image = vec![empty; self.window.pixels()];
-        self.place(|index, tile, own| image[index] = value(tile, own));
-        image
-    }
-
-    /// Visits every pixel: its place in the image, row by row, its tile, and its place in that.
-    fn place(&self, mut visit: impl FnMut(usize, &Tile, usize)) {
         let width = self.window.width() as usize;
         for tile in &self.tiles {
             let tile_width = tile.window.width() as usize;
             for pixel in 0..tile.window.pixels() {
                 let x = (tile.window.x0 - self.window.x0) as usize + pixel % tile_width;
                 let y = (tile.window.y0 - self.window.y0) as usize + pixel / tile_width;
-                visit(y * width + x, tile, pixel);
+                image[y * width + x] = value(tile, pixel);
             }
         }
+        image
     }
 
     /// Means over the pixels of a region, which are scrambled independently of each other; standard
