@@ -50,57 +50,48 @@ impl Render {
         let text = |value: &str| Some(Attribute::Text(value.to_owned()));
         let count = |value: u64| Some(Attribute::whole_number(value));
         let double = |value: f64| Some(Attribute::Double(value));
-        let error = Some(rendered.mean_luminance().standard_error).filter(|e| e.is_finite());
-        let cut_off = image.max_depth.map(|_| rendered.cut_off());
-        let strata = rendered.samples < image.spp && image.sampler.needs_count();
         let settings = source
             .set
             .iter()
             .map(|(key, value)| format!("{key}={value}"));
-        let settings: Vec<String> = settings.collect();
+        let settings = settings.collect::<Vec<_>>().join("\n");
+        let settings = Some(settings).filter(|_| !source.set.is_empty());
+        let strata = rendered.samples < image.spp && image.sampler.needs_count();
+        let planned = strata.then(|| image.spp.to_string());
         let [width, height] = image.size;
+        let crop = self
+            .crop()
+            .map(|crop| format!("{crop} of {width}x{height}"));
+        let error = rendered.mean_luminance().standard_error;
+        let depth = image.max_depth;
+        let cut_off = depth.map(|_| rendered.cut_off());
+        let (cut, cut_error) = cut_off.map(|cut| (cut.value, cut.standard_error)).unzip();
+        let depth = depth.map_or(text("unlimited"), |depth| count(depth.into()));
         // Some readers drop empty texts, and "none" is an answer.
         let lights = match plan.left_out.join(", ") {
             lights if lights.is_empty() => "none".to_owned(),
             lights => lights,
         };
+        let rungs = rungs(&rendered.rungs, plan.choices.precision);
         let attributes = [
             ("etalonVersion", text(env!("CARGO_PKG_VERSION"))),
             ("sceneFile", text(&source.path)),
             ("sceneHash", text(&hash(&source.text))),
             ("sceneText", text(&source.text)),
             ("panel", scene.panel.as_deref().and_then(text)),
-            (
-                "settings",
-                text(&settings.join("\n")).filter(|_| !settings.is_empty()),
-            ),
+            ("settings", settings.as_deref().and_then(text)),
             ("seed", text(&image.seed.to_string())),
             ("spp", count(rendered.samples.into())),
-            (
-                "sppPlanned",
-                text(&image.spp.to_string()).filter(|_| strata),
-            ),
+            ("sppPlanned", planned.as_deref().and_then(text)),
             ("sampler", text(image.sampler.name())),
             ("replicates", count(rendered.replicates().into())),
             ("precision", text(plan.choices.precision.name())),
             ("wavelengths", count(plan.choices.wavelengths.into())),
             ("instructions", text(self.instructions.name())),
             ("plan", text(&self.explain().join("\n"))),
-            (
-                "rungs",
-                text(&rungs(&rendered.rungs, plan.choices.precision)),
-            ),
-            (
-                "maxDepth",
-                image
-                    .max_depth
-                    .map_or_else(|| text("unlimited"), |n| count(n.into())),
-            ),
-            (
-                "crop",
-                self.crop()
-                    .and_then(|crop| text(&format!("{crop} of {width}x{height}"))),
-            ),
+            ("rungs", text(&rungs)),
+            ("maxDepth", depth),
+            ("crop", crop.as_deref().and_then(text)),
             (
                 "targetError",
                 self.goal().and_then(|goal| double(goal.error)),
@@ -108,15 +99,9 @@ impl Render {
             ("seconds", double(rendered.seconds)),
             ("samplesPerSecond", double(rendered.samples_per_second())),
             ("nanCount", count(rendered.not_a_number)),
-            ("standardError", error.and_then(double)),
-            (
-                "energyCutByMaxDepth",
-                cut_off.and_then(|share| double(share.value)),
-            ),
-            (
-                "energyCutStandardError",
-                cut_off.and_then(|share| double(share.standard_error)),
-            ),
+            ("standardError", double(error).filter(|_| error.is_finite())),
+            ("energyCutByMaxDepth", cut.and_then(double)),
+            ("energyCutStandardError", cut_error.and_then(double)),
             ("lightsLeftOut", text(&lights)),
         ];
         let known = |(name, value): (&str, Option<_>)| Some((name.to_owned(), value?));
