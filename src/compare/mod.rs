@@ -32,11 +32,8 @@ pub enum CompareError {
     #[error(transparent)]
     Film(#[from] film::Error),
     /// A picture without anything to compare.
-    #[error("{} has neither R, G, B nor spectral channels S0.…nm", path.display())]
-    Channels {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("{} has neither R, G, B nor spectral channels S0.…nm", .0.display())]
+    Channels(PathBuf),
     /// Values that are infinite or not numbers.
     #[error(
         "{} has {count} values that are not finite in channel {channel}, the first at pixel {},{}",
@@ -52,36 +49,24 @@ pub enum CompareError {
         /// Column and row of the first.
         first: [usize; 2],
     },
-    /// Variances of which some are negative, infinite or not numbers.
-    #[error("{} has a variance or standard error that is negative or not finite in channel {channel}", path.display())]
-    Variance {
-        /// The file.
-        path: PathBuf,
-        /// The channel.
-        channel: String,
-    },
-    /// Pictures of different sizes.
+    /// A file and a channel of it of whose variances some are negative, infinite or not numbers.
+    #[error(
+        "{} has a variance or standard error that is negative or not finite in channel {}",
+        .0.display(), .1
+    )]
+    Variance(PathBuf, String),
+    /// Pictures of different sizes; width and height of each.
     #[error(
         "{} has {}x{} pixels and {} has {}x{}: only pictures of one size can be compared",
-        paths[0].display(), sizes[0][0], sizes[0][1], paths[1].display(), sizes[1][0], sizes[1][1]
+        .0[0].display(), .1[0][0], .1[0][1], .0[1].display(), .1[1][0], .1[1][1]
     )]
-    Sizes {
-        /// The files.
-        paths: [PathBuf; 2],
-        /// Width and height of each.
-        sizes: [[usize; 2]; 2],
-    },
-    /// Pictures without a common channel.
+    Sizes([PathBuf; 2], [[usize; 2]; 2]),
+    /// Pictures without a common channel; the channels of each, separated by commas.
     #[error(
         "{} and {} share no channel: the first has {}, the second {}",
-        paths[0].display(), paths[1].display(), names[0], names[1]
+        .0[0].display(), .0[1].display(), .1[0], .1[1]
     )]
-    NothingShared {
-        /// The files.
-        paths: [PathBuf; 2],
-        /// The channels of each, separated by commas.
-        names: [String; 2],
-    },
+    NothingShared([PathBuf; 2], [String; 2]),
 }
 
 /// How far two pictures are apart, or a picture and a number, and whether noise alone explains it.

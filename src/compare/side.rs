@@ -54,9 +54,7 @@ impl Side {
         let values = picture.channels.iter().map(|channel| &channel.name);
         let values: Vec<&String> = values.filter(|name| is_value(name)).collect();
         if values.is_empty() {
-            return Err(CompareError::Channels {
-                path: path.to_owned(),
-            });
+            return Err(CompareError::Channels(path.to_owned()));
         }
         let mut channels = Vec::new();
         for name in in_order(values) {
@@ -150,10 +148,7 @@ fn channel(path: &Path, picture: &Picture, name: &str) -> Result<Channel, Compar
     let variances = variances.filter(|v| !v.iter().all(|v| v.is_nan()));
     let sound = |v: &Vec<f64>| v.iter().all(|&v| v >= 0.0 && v.is_finite());
     if !variances.as_ref().is_none_or(sound) {
-        return Err(CompareError::Variance {
-            path: path.to_owned(),
-            channel: name.to_owned(),
-        });
+        return Err(CompareError::Variance(path.to_owned(), name.to_owned()));
     }
     Ok(Channel {
         name: name.to_owned(),

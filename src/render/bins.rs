@@ -36,18 +36,12 @@ pub struct Shares {
 /// Why there can be no such bins.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum BinError {
-    /// A bin reaches out of the wavelengths that paths carry.
-    #[error("the bin at {centre} nm reaches out of {SHORTEST} nm to {LONGEST} nm")]
-    Outside {
-        /// Middle of the bin, nm.
-        centre: f64,
-    },
-    /// Not positive, not finite, or more bins than there are cells.
-    #[error("the bins' width of {width} nm is not one of at most {CELLS} bins")]
-    Width {
-        /// Width asked for, nm.
-        width: f64,
-    },
+    /// The bin about this wavelength in nm reaches out of the wavelengths that paths carry.
+    #[error("the bin at {0} nm reaches out of {SHORTEST} nm to {LONGEST} nm")]
+    Outside(f64),
+    /// A width in nm that is not positive, not finite, or makes more bins than there are cells.
+    #[error("the bins' width of {0} nm is not one of at most {CELLS} bins")]
+    Width(f64),
 }
 
 impl BinGrid {
@@ -60,7 +54,7 @@ impl BinGrid {
         // Rounded decimals such as (0.7 − 0.4)/0.1 may fall just short of a whole number.
         let steps = ((to - from) / step + 1e-9).floor();
         if !(step > 0.0 && steps >= 0.0 && steps < CELLS as f64) {
-            return Err(BinError::Width { width: step });
+            return Err(BinError::Width(step));
         }
         let centres: Vec<f64> = (0..=steps as u32)
             .map(|i| from + f64::from(i) * step)
@@ -68,7 +62,7 @@ impl BinGrid {
         let half = step / 2.0;
         let inside = |c: f64| c - half >= SHORTEST && c + half <= LONGEST;
         if let Some(&centre) = centres.iter().find(|&&c| !inside(c)) {
-            return Err(BinError::Outside { centre });
+            return Err(BinError::Outside(centre));
         }
         Ok(Self {
             centres,

@@ -229,10 +229,7 @@ struct Run {
 
 /// Buffers of a thread.
 #[derive(Debug, Default)]
-pub struct Worker<T, const C: usize>
-where
-    T: Scalar,
-{
+pub struct Worker<T: Scalar, const C: usize> {
     workspace: Workspace<T, C>,
     requests: chunk::Requests,
     runs: Vec<Run>,

@@ -134,10 +134,14 @@ impl Tracer {
             let [low, high] = object.value.shape.corners()?;
             Some(Bounds::around_image(&object.value.to_world, low, high))
         };
+        let priority = |object: &Named<Object>| {
+            let material = scene.materials.get(object.value.material);
+            u8::from(material.is_some_and(|m| m.value.surface.kind.refracts()))
+        };
         let objects = &scene.objects;
         Ok(Self {
             names: objects.iter().map(|o| o.name.clone()).collect(),
-            priorities: objects.iter().map(|o| priority(scene, o)).collect(),
+            priorities: objects.iter().map(priority).collect(),
             objects: objects.iter().map(place).collect::<Result<_, _>>()?,
             all: (0..objects.len() as u32).collect(),
             index: (objects.len() > LARGEST_LIST)
@@ -160,11 +164,8 @@ impl Tracer {
             t_min: 0.0,
             t_max: f64::INFINITY,
         };
-        self.first_hit(
-            &query,
-            &mut Workspace::new(Instructions::best()),
-            &mut Decided::default(),
-        )
+        let mut workspace = Workspace::new(Instructions::best());
+        self.first_hit(&query, &mut workspace, &mut Decided::default())
     }
 
     /// The first hit within the limits of `query`; `decided` counts the answers, and one
@@ -279,9 +280,4 @@ pub fn first_hits(
             }
         })
         .collect())
-}
-
-fn priority(scene: &Scene, object: &Named<Object>) -> u8 {
-    let material = scene.materials.get(object.value.material);
-    u8::from(material.is_some_and(|m| m.value.surface.kind.refracts()))
 }
