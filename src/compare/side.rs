@@ -50,16 +50,17 @@ impl Side {
     /// # Errors
     /// [`CompareError`] for pictures that hold nothing to compare, or values that are not numbers.
     pub fn of_picture(path: &Path, picture: Picture) -> Result<Self, CompareError> {
-        let is_value = |name: &str| names::RGB.contains(&name) || wavelength(name).is_some();
-        let values = picture.channels.iter().map(|channel| &channel.name);
-        let values: Vec<&String> = values.filter(|name| is_value(name)).collect();
-        if values.is_empty() {
+        let places = picture.channels.iter();
+        let mut places: Vec<(f64, &str)> = places
+            .filter_map(|channel| Some((place(&channel.name)?, channel.name.as_str())))
+            .collect();
+        if places.is_empty() {
             return Err(CompareError::Channels(path.to_owned()));
         }
-        let mut channels = Vec::new();
-        for name in in_order(values) {
-            channels.push(channel(path, &picture, name)?);
-        }
+        places.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let channels = places.into_iter();
+        let channels = channels.map(|(_, name)| channel(path, &picture, name));
+        let channels = channels.collect::<Result<Vec<_>, _>>()?;
         let freedom = match picture.attribute("replicates") {
             Some(Attribute::Int(count)) if *count > 1 => Some(f64::from(count - 1)),
             _ => None,
@@ -118,14 +119,11 @@ pub fn mean_over(channel: &Channel, freedom: f64, pixels: Option<&[usize]>) -> O
     Some(Estimate::mean_of(&values, &variances, freedom))
 }
 
-/// R, G, B, then bands from short to long wavelengths.
-fn in_order(mut names: Vec<&String>) -> Vec<&String> {
-    let place = |name: &&String| {
-        let rgb = names::RGB.iter().position(|other| other == name);
-        rgb.map_or_else(|| wavelength(name).unwrap_or(0.0) + 3.0, |i| i as f64)
-    };
-    names.sort_by(|a, b| place(a).total_cmp(&place(b)));
-    names
+/// The order of channels that are compared: R, G, B, then bands from short to long wavelengths.
+fn place(name: &str) -> Option<f64> {
+    let rgb = names::RGB.iter().position(|other| *other == name);
+    rgb.map(|index| index as f64)
+        .or_else(|| Some(wavelength(name)? + 3.0))
 }
 
 fn channel(path: &Path, picture: &Picture, name: &str) -> Result<Channel, CompareError> {

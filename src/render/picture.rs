@@ -112,29 +112,32 @@ impl Render {
 /// Shares of rays and questions that each arithmetic has decided.
 fn rungs(rungs: &Rungs, precision: Precision) -> String {
     let share = |part: u64, whole: u64| part as f64 / whole.max(1) as f64;
+    let decided = |parts: [u64; 3], whole: u64| {
+        let [double, double_double, exact] = parts.map(|part| share(part, whole));
+        format!(
+            "{double:.9} decided in f64, {double_double:.9} in double-double, {exact:.9} exactly"
+        )
+    };
     let ladder = rungs.ladder;
-    let questions = ladder.double + ladder.double_double + ladder.exact;
+    let parts = [ladder.double, ladder.double_double, ladder.exact];
+    let questions = parts.iter().sum();
     let mut text = format!(
         "{} rays: {:.9} decided in lanes of {}, {:.9} taken to the ladder; its {questions} \
-         questions: {:.9} decided in f64, {:.9} in double-double, {:.9} exactly",
+         questions: {}",
         rungs.rays,
         share(rungs.rays - rungs.undecided.min(rungs.rays), rungs.rays),
         precision.name(),
         share(rungs.undecided, rungs.rays),
-        share(ladder.double, questions),
-        share(ladder.double_double, questions),
-        share(ladder.exact, questions),
+        decided(parts, questions),
     );
     let implicit = rungs.implicit;
     let rays = implicit.rays();
     if rays > 0 {
+        let parts = [implicit.double, implicit.double_double, implicit.exact];
         let _ = write!(
             text,
-            "; {rays} questions about implicit surfaces: {:.9} decided in f64, {:.9} in \
-             double-double, {:.9} exactly, {} undecided, {} not certified",
-            share(implicit.double, rays),
-            share(implicit.double_double, rays),
-            share(implicit.exact, rays),
+            "; {rays} questions about implicit surfaces: {}, {} undecided, {} not certified",
+            decided(parts, rays),
             implicit.undecided,
             implicit.uncertified,
         );

@@ -67,6 +67,8 @@ pub struct Rendered {
     pub not_a_number: u64,
     /// The first sample left out, to be replayed.
     pub first_not_a_number: Option<chunk::Request>,
+    /// Mean luminance after the last pass.
+    luminance: Estimate,
     replicates: Replicates,
     tiles: Vec<Tile>,
 }
@@ -101,6 +103,7 @@ pub fn render(plan: &Plan, request: &Request, progress: &mut dyn Progress) -> Re
         rungs: Rungs::default(),
         not_a_number: 0,
         first_not_a_number: None,
+        luminance: Estimate::exact(f64::NAN),
         replicates,
         tiles: tiles.collect(),
     };
@@ -111,12 +114,9 @@ pub fn render(plan: &Plan, request: &Request, progress: &mut dyn Progress) -> Re
         pass(plan, request.instructions, &mut rendered.tiles, from, to);
         rendered.samples = to;
         rendered.seconds = start.elapsed().as_secs_f64();
-        let goes_on = progress.passed(
-            to,
-            request.samples,
-            start.elapsed(),
-            rendered.mean_luminance().relative_error(),
-        );
+        rendered.luminance = rendered.luminance_of_tiles();
+        let error = rendered.luminance.relative_error();
+        let goes_on = progress.passed(to, request.samples, start.elapsed(), error);
         let late = request.time.is_some_and(|time| start.elapsed() >= time);
         if !goes_on || late {
             break;
@@ -296,6 +296,10 @@ impl Rendered {
     /// Mean luminance; pixels are scrambled independently, so their squared standard errors add. The
     /// standard error is NaN with a single replicate.
     pub fn mean_luminance(&self) -> Estimate {
+        self.luminance
+    }
+
+    fn luminance_of_tiles(&self) -> Estimate {
         // Tiles side by side, then their sums in order: the same bits on any number of threads.
         let counts = self.counts();
         let tiles = self.tiles.par_iter();
