@@ -65,28 +65,31 @@ pub struct SceneArguments {
     /// interval, polynomial.
     #[arg(long, value_name = "NAME")]
     pub finder: Option<String>,
+    /// Seed of all randomness.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub seed: Option<String>,
 }
-
-/// Keys of `[image]`, and the values that options give them.
-type ImageKeys<'a> = &'a [(&'a str, &'a Option<String>)];
 
 impl SceneArguments {
     /// What is laid over the file: the panel, each `--set` in order, then the options that stand
     /// for keys of `[image]`. Values are the scene's to check.
-    pub fn overrides(&self, image: ImageKeys) -> Overrides {
-        let options = image
-            .iter()
-            .filter_map(|(key, value)| Some((format!("image.{key}"), (*value).clone()?)));
+    pub fn overrides(&self, image: &[(&str, &Option<String>)]) -> Overrides {
+        let mut set = self.set.clone();
+        let own = ("seed", &self.seed);
+        for (key, value) in image.iter().chain([&own]) {
+            let option = |value: &String| (format!("image.{key}"), value.clone());
+            set.extend(value.as_ref().map(option));
+        }
         Overrides {
             panel: self.panel.clone(),
-            set: self.set.iter().cloned().chain(options).collect(),
+            set,
             finder: self.finder.clone(),
         }
     }
 
     /// Reads the scene with these overrides.
-    pub fn load(&self, image: ImageKeys) -> Result<Scene, Failure> {
-        let scene = Scene::load_with(&self.scene, &self.overrides(image));
+    pub fn load(&self) -> Result<Scene, Failure> {
+        let scene = Scene::load_with(&self.scene, &self.overrides(&[]));
         Ok(scene.map_err(|error| scene_words(&error))?)
     }
 }
@@ -175,14 +178,11 @@ pub struct ImageOptions {
     /// Wavelengths per path.
     #[arg(long, value_name = "4|8", allow_negative_numbers = true)]
     pub wavelengths: Option<String>,
-    /// Seed of all randomness.
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    pub seed: Option<String>,
 }
 
 impl ImageOptions {
     /// Keys of `[image]` and the values asked for.
-    pub fn keys(&self) -> [(&'static str, &Option<String>); 8] {
+    pub fn keys(&self) -> [(&'static str, &Option<String>); 7] {
         [
             ("spp", &self.spp),
             ("size", &self.size),
@@ -191,7 +191,6 @@ impl ImageOptions {
             ("replicates", &self.replicates),
             ("precision", &self.precision),
             ("wavelengths", &self.wavelengths),
-            ("seed", &self.seed),
         ]
     }
 }
@@ -248,9 +247,6 @@ pub struct Replay {
     /// The camera path of this pixel, counted from 0.
     #[arg(long, value_name = "I")]
     pub sample: u32,
-    /// Seed of all randomness.
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    pub seed: Option<String>,
 }
 
 #[derive(Debug, Args)]
@@ -316,9 +312,6 @@ pub struct Study {
     /// Refuse what would take longer than this, the reference included.
     #[arg(long, value_name = "SECONDS", default_value = "150", value_parser = seconds)]
     pub budget: Duration,
-    /// Seed of all randomness.
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    pub seed: Option<String>,
     /// The directory to write to; by default the scene's name, with the panel's, ending in -study.
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,

@@ -7,7 +7,7 @@ use super::args::Info;
 use super::{Answer, Failure, say};
 
 pub fn run(arguments: &Info) -> Result<Answer, Failure> {
-    let scene = arguments.scene.load(&[])?;
+    let scene = arguments.scene.load()?;
     let plan = Plan::new(&scene, arguments.plan == "full")?;
     say(&explain::explain(&scene, &plan).join("\n"))?;
     Ok(Answer::Good)

@@ -10,7 +10,7 @@ use super::args::Replay;
 use super::{Answer, Failure, say};
 
 pub fn run(arguments: &Replay) -> Result<Answer, Failure> {
-    let scene = arguments.scene.load(&[("seed", &arguments.seed)])?;
+    let scene = arguments.scene.load()?;
     let [x, y] = arguments.pixel;
     let [width, height] = scene.image.size;
     if x >= width || y >= height {

@@ -81,7 +81,7 @@ fn request(arguments: &args::Study, threads: u32) -> Request {
     Request {
         subject: Subject {
             path: scene.scene.clone(),
-            overrides: scene.overrides(&[("seed", &arguments.seed)]),
+            overrides: scene.overrides(&[]),
             instructions: arguments.instructions,
         },
         axes: arguments.over.clone(),

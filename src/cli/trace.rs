@@ -23,7 +23,7 @@ const PIECE: usize = 1 << 10;
 const PIECES: usize = 256;
 
 pub fn run(arguments: &Trace) -> Result<Answer, Failure> {
-    let tracer = Tracer::new(&arguments.scene.load(&[])?)?;
+    let tracer = Tracer::new(&arguments.scene.load()?)?;
     let mut lines = Lines::open(&arguments.rays)?;
     let table = lines.heading()?;
     if !arguments.quiet && !table.ignored.is_empty() {
