@@ -84,15 +84,15 @@ fn trace(tracer: &Tracer, table: &Table, lines: &[Line]) -> Piece {
     };
     let mut workspace = Workspace::default();
     for line in lines {
-        let row = match table.ray(line) {
-            Ok(row) => row,
+        let (id, query) = match table.ray(line) {
+            Ok(ray) => ray,
             Err(error) => {
                 piece.end = Err(error);
                 break;
             }
         };
-        let first = tracer.first_hit(&row.query, &mut workspace, &mut piece.decided);
-        push_field(&mut piece.text, &row.id);
+        let first = tracer.first_hit(&query, &mut workspace, &mut piece.decided);
+        push_field(&mut piece.text, &id);
         match first {
             First::Hit(hit) => push_hit(&mut piece.text, tracer, &hit),
             First::Nothing => piece.text.push_str(",0,,,,,,,,,,,,,\n"),

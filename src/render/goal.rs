@@ -82,7 +82,7 @@ const SLOPES: [f64; 2] = [-1.0, -0.5];
 pub fn reached(rendered: &Rendered, target: Target) -> f64 {
     let mut pilot = Pilot::default();
     pilot.add(rendered, target);
-    pilot.worst().square.sqrt()
+    pilot.worst()[0].sqrt()
 }
 
 /// Chooses the samples a pixel of a picture of so many pixels, at most `most`. `pilot` renders with
@@ -150,21 +150,8 @@ struct Place {
     square: f64,
 }
 
-/// A squared relative standard error, NaN where there is none, and its degrees of freedom (see
-/// [`Estimate::mean_of`](crate::stats::Estimate::mean_of)).
-#[derive(Debug, Clone, Copy)]
-struct Relative {
-    square: f64,
-    freedom: f64,
-}
-
-impl Relative {
-    /// The error of a value that is known exactly.
-    const NONE: Self = Self {
-        square: 0.0,
-        freedom: f64::INFINITY,
-    };
-}
+/// The squared relative error, and its degrees of freedom, of a value that is known exactly.
+const EXACT: [f64; 2] = [0.0, f64::INFINITY];
 
 /// Joined renders of equally many samples: one place for the picture, or one for each block.
 #[derive(Debug, Default)]
@@ -179,13 +166,10 @@ impl Pilot {
     fn add(&mut self, rendered: &Rendered, target: Target) {
         let pixels = rendered.xyz();
         let window = rendered.window;
+        let [width, height] = [window.width(), window.height()].map(|n| n as usize);
         let blocks = match target {
             Target::Image => vec![(0..pixels.len()).collect()],
-            Target::Block => blocks::members(
-                window.width() as usize,
-                window.height() as usize,
-                blocks::EDGE,
-            ),
+            Target::Block => blocks::members(width, height, blocks::EDGE),
         };
         self.places.resize(blocks.len(), Place::default());
         for (place, block) in self.places.iter_mut().zip(blocks) {
@@ -200,39 +184,37 @@ impl Pilot {
         self.freedom = f64::from(rendered.replicates()) - 1.0;
     }
 
-    /// The place whose error is largest.
-    fn worst(&self) -> Relative {
+    /// The largest squared relative standard error of a place, NaN where one has none, and its degrees
+    /// of freedom (see [`Estimate::mean_of`](crate::stats::Estimate::mean_of)).
+    fn worst(&self) -> [f64; 2] {
         let places = self.places.iter().map(|place| self.relative(place));
-        places.fold(Relative::NONE, |a, b| {
-            if a.square >= b.square || a.square.is_nan() {
-                a
-            } else {
-                b
-            }
-        })
+        places.fold(
+            EXACT,
+            |a, b| {
+                if a[0] >= b[0] || a[0].is_nan() { a } else { b }
+            },
+        )
     }
 
-    /// The error of one render of a place; a place without variance has none.
-    fn relative(&self, place: &Place) -> Relative {
+    /// The same of one place; one without variance, such as a black one, has no error.
+    fn relative(&self, place: &Place) -> [f64; 2] {
         if place.variance == 0.0 {
-            return Relative::NONE;
+            return EXACT;
         }
+        let square = f64::from(self.renders) * place.variance / (place.total * place.total);
         let freedom = (self.freedom + 2.0) * place.variance * place.variance / place.square;
-        Relative {
-            square: f64::from(self.renders) * place.variance / (place.total * place.total),
-            freedom: freedom.max(self.freedom),
-        }
+        [square, freedom.max(self.freedom)]
     }
 
     fn is_certain(&self) -> bool {
-        self.renders == RENDERS || self.worst().freedom >= FREEDOM
+        self.renders == RENDERS || self.worst()[1] >= FREEDOM
     }
 
     /// Relative standard error to plan with. Samples in proportion to an estimated variance s² of
     /// k degrees of freedom leave the picture σ²/s² times the wanted one, on average k/(k − 2)
     /// (the mean of an inverse χ²); s² is taken that much larger.
     fn error(&self) -> f64 {
-        let Relative { square, freedom } = self.worst();
+        let [square, freedom] = self.worst();
         let larger = if freedom.is_finite() {
             freedom / (freedom - 2.0).max(1.0)
         } else {

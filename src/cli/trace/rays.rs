@@ -28,13 +28,6 @@ pub struct Line {
     row: u64,
 }
 
-/// A ray and its name.
-pub struct RayRow {
-    /// As written, or the number of the row, counted from 0.
-    pub id: String,
-    pub query: Query,
-}
-
 /// The meaning of each column, from the heading.
 pub struct Table {
     file: String,
@@ -168,8 +161,8 @@ impl Table {
         }
     }
 
-    /// Reads a ray.
-    pub fn ray(&self, line: &Line) -> Result<RayRow, Failure> {
+    /// Reads the id of a ray, or the number of its row where there is none, and where hits count on it.
+    pub fn ray(&self, line: &Line) -> Result<(String, Query), Failure> {
         let fields = split(&line.text);
         let place = (self.file.as_str(), line.number);
         if fields.len() != self.width {
@@ -210,14 +203,13 @@ impl Table {
             let expected = "dx,dy,dz that are not all 0";
             return Err(malformed(place, Some(3), "the direction is zero", expected));
         }
-        Ok(RayRow {
-            id: field(ID).map_or_else(|| line.row.to_string(), str::to_owned),
-            query: Query {
-                ray,
-                t_min: number(T_MIN, 0.0)?,
-                t_max: number(T_MAX, f64::INFINITY)?,
-            },
-        })
+        let query = Query {
+            ray,
+            t_min: number(T_MIN, 0.0)?,
+            t_max: number(T_MAX, f64::INFINITY)?,
+        };
+        let id = field(ID).map_or_else(|| line.row.to_string(), str::to_owned);
+        Ok((id, query))
     }
 }
 
