@@ -7,7 +7,7 @@ use std::io::{self, Write};
 
 use etalon::inside::render::trace::Decided;
 use etalon::inside::shape::implicit::certified::Workspace;
-use etalon::{First, FirstHit, Found, Tier, Tracer};
+use etalon::{First, FirstHit, Tier, Tracer};
 use rayon::prelude::*;
 
 use super::args::Trace;
@@ -35,14 +35,12 @@ pub fn run(arguments: &Trace) -> Result<Answer, Failure> {
     output.write_all(HEADING.as_bytes())?;
     loop {
         let (batch, end) = read_batch(&mut lines);
-        let pieces: Vec<Piece> = batch
-            .par_chunks(PIECE)
-            .map(|lines| trace(&tracer, &table, lines))
-            .collect();
-        for piece in pieces {
-            output.write_all(piece.text.as_bytes())?;
-            decided = decided.joined(piece.decided);
-            piece.end?;
+        let pieces = batch.par_chunks(PIECE);
+        let pieces = pieces.map(|lines| trace(&tracer, &table, lines));
+        for (text, own, traced) in pieces.collect::<Vec<_>>() {
+            output.write_all(text.as_bytes())?;
+            decided = decided.joined(own);
+            traced?;
         }
         if end? {
             break;
@@ -68,84 +66,54 @@ fn read_batch(lines: &mut Lines) -> (Vec<Line>, Result<bool, Failure>) {
     (batch, Ok(false))
 }
 
-/// Some rows of the output.
-struct Piece {
-    text: String,
-    decided: Decided,
-    /// The first line that is no ray ends the table.
-    end: Result<(), Failure>,
-}
-
-fn trace(tracer: &Tracer, table: &Table, lines: &[Line]) -> Piece {
-    let mut piece = Piece {
-        text: String::new(),
-        decided: Decided::default(),
-        end: Ok(()),
-    };
+/// Some rows of the output, up to the first line that is no ray, which ends the table.
+fn trace(tracer: &Tracer, table: &Table, lines: &[Line]) -> (String, Decided, Result<(), Failure>) {
+    let (mut text, mut decided) = (String::new(), Decided::default());
     let mut workspace = Workspace::default();
     for line in lines {
         let (id, query) = match table.ray(line) {
             Ok(ray) => ray,
-            Err(error) => {
-                piece.end = Err(error);
-                break;
-            }
+            Err(error) => return (text, decided, Err(error)),
         };
-        let first = tracer.first_hit(&query, &mut workspace, &mut piece.decided);
-        push_field(&mut piece.text, &id);
+        let first = tracer.first_hit(&query, &mut workspace, &mut decided);
+        push_field(&mut text, &id);
         match first {
-            First::Hit(hit) => push_hit(&mut piece.text, tracer, &hit),
-            First::Nothing => piece.text.push_str(",0,,,,,,,,,,,,,\n"),
+            First::Hit(hit) => push_hit(&mut text, tracer, &hit),
+            First::Nothing => text.push_str(",0,,,,,,,,,,,,,\n"),
             First::Undecided(finder) => {
-                let _ = writeln!(piece.text, ",undecided,,,,,,,,,{finder},,,,");
+                let _ = writeln!(text, ",undecided,,,,,,,,,{finder},,,,");
             }
         }
     }
-    piece
+    (text, decided, Ok(()))
 }
 
+/// Appends what follows the id of a ray that hits, numbers with the shortest digits that give back the
+/// same f64.
 fn push_hit(text: &mut String, tracer: &Tracer, hit: &FirstHit) {
-    text.push_str(",1");
-    push_numbers(text, &[hit.t]);
-    push_numbers(text, &hit.point.to_array());
-    match hit.normal {
-        Some(normal) => push_numbers(text, &normal.to_array()),
-        None => text.push_str(",,,"),
-    }
-    text.push(',');
+    let [x, y, z] = hit.point.to_array();
+    // Writing to a string cannot fail.
+    let _ = write!(text, ",1,{:?},{x:?},{y:?},{z:?},", hit.t);
+    let _ = match hit.normal.map(|normal| normal.to_array()) {
+        Some([x, y, z]) => write!(text, "{x:?},{y:?},{z:?},"),
+        None => write!(text, ",,,"),
+    };
     push_field(text, tracer.name(hit.object));
-    match &hit.found {
-        Some(found) => push_found(text, found),
-        None => text.push_str(",,,,,"),
-    }
-    text.push('\n');
-}
-
-/// Finder, enclosure, multiplicity and tier.
-fn push_found(text: &mut String, found: &Found) {
-    text.push(',');
-    text.push_str(found.finder);
-    push_numbers(text, &found.enclosure);
-    text.push(',');
+    let Some(found) = &hit.found else {
+        text.push_str(",,,,,\n");
+        return;
+    };
+    let [low, high] = found.enclosure;
+    let _ = write!(text, ",{},{low:?},{high:?},", found.finder);
     if let Some(multiplicity) = found.multiplicity {
-        // Writing to a string cannot fail.
         let _ = write!(text, "{multiplicity}");
     }
-    text.push(',');
     text.push_str(match found.tier {
-        Some(Tier::Double) => "f64",
-        Some(Tier::DoubleDouble) => "double-double",
-        Some(Tier::Exact) => "exact",
-        None => "uncertified",
+        Some(Tier::Double) => ",f64\n",
+        Some(Tier::DoubleDouble) => ",double-double\n",
+        Some(Tier::Exact) => ",exact\n",
+        None => ",uncertified\n",
     });
-}
-
-/// The shortest digits that give back the same f64.
-fn push_numbers(text: &mut String, numbers: &[f64]) {
-    for number in numbers {
-        // Writing to a string cannot fail.
-        let _ = write!(text, ",{number:?}");
-    }
 }
 
 /// A field, in quotes where it has to be (RFC 4180).
