@@ -35,7 +35,6 @@ const TO_XYZ: [[f64; 3]; 3] = [
 
 /// HDR-ꟻLIP of each pixel of a test picture against a reference, both linear sRGB of
 /// `width` pixels a row.
-#[must_use]
 pub fn flip(reference: &[[f64; 3]], test: &[[f64; 3]], width: usize) -> Vec<f64> {
     let filters = Filters::new(PIXELS_PER_DEGREE);
     let maps: Vec<Vec<f64>> = exposures(reference)

@@ -95,7 +95,6 @@ struct Block {
 }
 
 /// Judges two pictures of one size; `None` where they share no channel whose variances both know.
-#[must_use]
 pub fn judge(a: &Side, b: &Side, level: f64) -> Option<Judgement> {
     let (own, others) = (a.freedom?, b.freedom?);
     let known: Vec<(&Channel, &Channel)> = shared(a, b)
@@ -135,7 +134,6 @@ pub fn judge(a: &Side, b: &Side, level: f64) -> Option<Judgement> {
 }
 
 /// Judges the image mean of each channel against a number; `None` where no variances are known.
-#[must_use]
 pub fn against_truth(a: &Side, truth: f64, level: f64) -> Option<Judgement> {
     let freedom = a.freedom?;
     let mean = |channel| Some((channel, mean_over(channel, freedom, None)?));

@@ -108,7 +108,6 @@ impl Side {
 }
 
 /// The mean of a channel over some pixels, or all; pixels are independent of each other.
-#[must_use]
 pub fn mean_over(channel: &Channel, freedom: f64, pixels: Option<&[usize]>) -> Option<Estimate> {
     let variances = channel.variances.as_ref()?;
     let Some(pixels) = pixels else {

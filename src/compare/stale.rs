@@ -20,7 +20,6 @@ pub enum Freshness {
 }
 
 /// Looks for the scene file of a picture, relative to `root`.
-#[must_use]
 pub fn freshness(side: &Side, root: &Path) -> Freshness {
     let (Some(file), Some(recorded)) = (side.text("sceneFile"), side.text("sceneHash")) else {
         return Freshness::Unknown;
@@ -34,7 +33,6 @@ pub fn freshness(side: &Side, root: &Path) -> Freshness {
 }
 
 /// How the scenes or panels of two pictures differ; `None` where nothing that both record does.
-#[must_use]
 pub fn different_scenes(a: &Side, b: &Side) -> Option<String> {
     let differs = |name: &str| match (a.text(name), b.text(name)) {
         (Some(own), Some(others)) => own != others,

@@ -122,7 +122,6 @@ impl Attribute {
 }
 
 /// SHA-256 (FIPS 180-4) of a text's UTF-8 bytes, 64 hexadecimal digits: the hash of scenes.
-#[must_use]
 pub fn hash(text: &str) -> String {
     let digest = Sha256::digest(text.as_bytes());
     digest.iter().map(|byte| format!("{byte:02x}")).collect()

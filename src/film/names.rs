@@ -26,7 +26,6 @@ pub const MATERIAL_ID: &str = "material_id";
 pub const NOTHING: u32 = u32::MAX;
 
 /// The name of a channel: `layer.component`, or `component` alone in the unnamed layer.
-#[must_use]
 pub fn in_layer(layer: &str, component: &str) -> String {
     if layer.is_empty() {
         component.to_owned()

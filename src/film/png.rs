@@ -89,7 +89,6 @@ pub fn write_bytes(
 ///
 /// The percentile is the luminance of rank ⌈0.99 n⌉ among the n finite pixels. A picture that is
 /// black there keeps exposure 1.
-#[must_use]
 pub fn exposure(rgb: &[[f32; 3]]) -> f64 {
     let finite = rgb.iter().filter(|pixel| is_finite(**pixel));
     let mut luminances: Vec<f64> = finite

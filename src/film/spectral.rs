@@ -12,14 +12,12 @@ use super::{Attribute, Channel, Picture, names};
 const EMISSIVE_UNITS: &str = "W.m^-2.sr^-1";
 
 /// The name of the channel of unpolarised radiance at `nm` nanometres: `S0.550,000000nm`.
-#[must_use]
 pub fn channel_name(nm: f64) -> String {
     let digits = format!("{nm:.6}").replace('.', ",");
     format!("S0.{digits}nm")
 }
 
 /// The wavelength in nm of a channel of unpolarised radiance; `None` for other channels.
-#[must_use]
 pub fn wavelength(channel_name: &str) -> Option<f64> {
     let digits = channel_name.strip_prefix("S0.")?.strip_suffix("nm")?;
     let nm: f64 = digits.replace(',', ".").parse().ok()?;

@@ -98,12 +98,6 @@ impl BinGrid {
     }
 }
 
-impl Shares {
-    fn of(&self, cell: usize) -> &[(u32, f64)] {
-        &self.shares[self.starts[cell] as usize..self.starts[cell + 1] as usize]
-    }
-}
-
 /// Sums by pixel, replicate and bin.
 #[derive(Debug, Clone)]
 pub struct Bins {
@@ -146,7 +140,9 @@ impl Bins {
         let sums = &mut self.sums[place * count..][..count];
         for (i, radiance) in radiance.iter().enumerate() {
             let radiance = radiance.to_f64() / C as f64;
-            for (bin, share) in self.shares.of(i * (CELLS / C) + row as usize) {
+            let cell = i * (CELLS / C) + row as usize;
+            let [start, end] = [cell, cell + 1].map(|cell| self.shares.starts[cell] as usize);
+            for (bin, share) in &self.shares.shares[start..end] {
                 sums[*bin as usize][0] += radiance * share;
             }
         }
