@@ -77,7 +77,8 @@ fn request(arguments: &args::Study, threads: u32) -> Request {
         let panel = scene.panel.iter().map(|panel| format!("-{panel}"));
         PathBuf::from(format!("{name}{}-study", panel.collect::<String>()))
     });
-    let words = std::env::args().skip(1).map(|word| quoted(&word));
+    let words = std::env::args_os().skip(1);
+    let words = words.map(|word| quoted(&word.to_string_lossy()));
     Request {
         subject: Subject {
             path: scene.scene.clone(),

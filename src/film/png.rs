@@ -31,7 +31,7 @@ const NOT_FINITE: [u8; 3] = [255, 0, 255];
 /// not at all; returns the factor of [`exposure`] it used.
 ///
 /// # Errors
-/// As [`write_bytes`].
+/// As [`write_colours`].
 pub fn write_preview(
     path: &Path,
     width: usize,
@@ -40,7 +40,7 @@ pub fn write_preview(
 ) -> Result<f64, Error> {
     let exposure = exposure(rgb);
     let colours: Vec<[u8; 3]> = rgb.iter().map(|&pixel| encode(pixel, exposure)).collect();
-    write_bytes(path, width, height, &colours)?;
+    write_colours(path, width, height, &colours)?;
     Ok(exposure)
 }
 
@@ -49,7 +49,7 @@ pub fn write_preview(
 /// # Errors
 /// [`Error::Write`], of the kind `InvalidInput` when the number of pixels is not `width` × `height` or
 /// not one that PNG can hold; otherwise as [`whole::write()`].
-pub fn write_bytes(
+pub fn write_colours(
     path: &Path,
     width: usize,
     height: usize,
