@@ -44,8 +44,8 @@
 //! ```
 //!
 //! [`Scene::load`] reads a scene file; every key of the format is listed in `scenes/README.md`.
-//! [`Render`] has methods for a part of the picture, further [layers](Layer), spectral
-//! [bins](BinGrid), a limit of time, and a [wanted error](Render::aim).
+//! [`Render`] takes a part of the picture, further [layers](Layer), spectral [bins](BinGrid), a limit
+//! of time, and a [wanted error](Render::aim).
 //!
 //! # A ray and a proof
 //!

@@ -8,7 +8,7 @@ use etalon::inside::film::spectral::channel_name;
 use etalon::inside::math::instructions::Instructions;
 use etalon::inside::plan::{Plan, PlanError};
 use etalon::inside::render::bins::{BinError, BinGrid};
-use etalon::inside::render::session::{Rendered, Request, Unwatched, render, render_binned};
+use etalon::inside::render::session::{Rendered, Request, Unwatched, render};
 use etalon::inside::render::tile::Window;
 use etalon::inside::render::trace::{Singular, first_hits};
 
@@ -139,11 +139,11 @@ impl Case {
     /// # Errors
     /// [`CaseError::NotANumber`].
     pub fn rendered(&self, plan: &Plan, spp: u32) -> Result<Side, CaseError> {
-        let request = Request::whole(self.scene.image.size, spp);
-        let rendered = match &self.bands {
-            Some(grid) => render_binned(plan, &request, grid, &mut Unwatched),
-            None => render(plan, &request, &mut Unwatched),
+        let request = Request {
+            bins: self.bands.as_ref(),
+            ..Request::whole(self.scene.image.size, spp)
         };
+        let rendered = render(plan, &request, &mut Unwatched);
         if rendered.not_a_number > 0 {
             return Err(CaseError::NotANumber {
                 name: self.name.clone(),
