@@ -3,6 +3,8 @@
 
 use std::ops::{Bound, RangeBounds};
 
+use glam::DVec3;
+
 use crate::spectrum::Spectrum;
 use crate::spectrum::ior::RefractiveIndex;
 
@@ -30,6 +32,12 @@ impl Range {
     /// Numbers greater than 0.
     pub const POSITIVE: Self = Self {
         low: Bound::Excluded(0.0),
+        high: Bound::Unbounded,
+    };
+
+    /// Numbers from 0.
+    pub const NOT_NEGATIVE: Self = Self {
+        low: Bound::Included(0.0),
         high: Bound::Unbounded,
     };
 
@@ -85,17 +93,33 @@ pub enum Quantity {
     Metal,
     /// n of a transparent medium: measured and named, a number, or a formula.
     Glass,
+    /// A position in the world, scene units.
+    Point,
+    /// A vector other than zero; its length means nothing.
+    Direction,
+    /// A table with a key for each of these.
+    Table(&'static [Parameter]),
 }
 
 impl Quantity {
     /// As how many spectra the loop reads it.
     pub const fn spectra(self) -> usize {
         match self {
-            Self::True | Self::Number { .. } => 0,
+            Self::True | Self::Number { .. } | Self::Point | Self::Direction | Self::Table(_) => 0,
             Self::Spectrum(_) => 1,
             Self::TwoSpectra(_) | Self::Metal | Self::Glass => 2,
         }
     }
+}
+
+/// What is meant where a key is left out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Usual {
+    /// This number, or this value at all wavelengths.
+    Number(f64),
+    Direction(DVec3),
+    /// No values: what the key describes is not there.
+    Nothing,
 }
 
 /// A key and its value.
@@ -105,9 +129,8 @@ pub struct Parameter {
     /// What it is, in words.
     pub what: &'static str,
     pub quantity: Quantity,
-    /// The number, or the same at all wavelengths, that is meant where the key is left out; without
-    /// one, it must be there.
-    pub default: Option<f64>,
+    /// What is meant where the key is left out; `None` if it must be there.
+    pub default: Option<Usual>,
 }
 
 /// A kind of thing.
@@ -158,4 +181,31 @@ pub enum Value {
     Spectrum(Spectrum),
     /// Of a [`Quantity::Metal`] or [`Quantity::Glass`].
     Index(RefractiveIndex),
+    Point(DVec3),
+    /// Of length 1.
+    Direction(DVec3),
+}
+
+impl Value {
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            _ => None,
+        }
+    }
+
+    pub fn spectrum(&self) -> Option<&Spectrum> {
+        match self {
+            Self::Spectrum(spectrum) => Some(spectrum),
+            _ => None,
+        }
+    }
+
+    /// The vector of a point or direction.
+    pub fn vector(&self) -> Option<DVec3> {
+        match self {
+            Self::Point(vector) | Self::Direction(vector) => Some(*vector),
+            _ => None,
+        }
+    }
 }

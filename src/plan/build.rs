@@ -1,9 +1,11 @@
 //! From a scene and its choices to the tables of the loop.
 
+use std::f64::consts::PI;
+
 use glam::DVec3;
 
 use super::PlanError;
-use super::bounds::about_camera;
+use super::bounds::{self, about_camera};
 use super::choose::Choices;
 use super::occluders::occluders;
 use crate::camera::LaneCamera;
@@ -13,17 +15,16 @@ use crate::integrate::list::List;
 use crate::integrate::model::{Appearance, Many, Model};
 use crate::integrate::needs::Needs;
 use crate::integrate::parts::Parts;
-use crate::light::{self, LaneLight, LightShape, SmallLights};
-use crate::material::Record;
+use crate::light::{Emitting, LaneLight, LightShape, SmallLights};
 use crate::math::affine::Affine;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Sequence;
-use crate::scene::{Emission, Light, Named, Object, Scene, Shape, Sides, Surface};
+use crate::scene::{Light, Scene, Shape};
 use crate::shape::hierarchy::Bounds;
 use crate::shape::lanes::LaneShape;
 use crate::shape::lanes::implicit::LaneImplicit;
 use crate::shape::resolve::Resolver;
-use crate::shape::{Placed, ShapeKind};
+use crate::shape::{Emitter, Placed, ShapeKind};
 use crate::spectrum::Spectrum;
 use crate::spectrum::cells;
 use crate::spectrum::grid::{SpectrumBank, WavelengthGrid};
@@ -54,10 +55,10 @@ pub fn build<T: Scalar>(
             .ok_or(PlanError::NotInvertible {
                 name: object.name.clone(),
             })?;
-        builder.dress(scene, index, &placed);
+        builder.appearance(scene, index, &placed);
     }
     for light in &scene.lights {
-        builder.free_light(scene, light);
+        builder.source(light, scene.camera.from);
     }
     let environment = scene
         .environment
@@ -144,10 +145,10 @@ struct Builder<'a, T> {
 
 impl<'a, T: Scalar> Builder<'a, T> {
     fn new(wavelengths: usize, grid: &'a WavelengthGrid, scene: &Scene) -> Self {
-        let placed = |o: &Named<Object>| {
-            super::bounds::bounds(&o.value.shape, &about_camera(scene, &o.value))
-        };
-        let bounds = scene.objects.iter().filter_map(placed);
+        let bounds = scene.objects.iter().filter_map(|object| {
+            let to_world = about_camera(scene, &object.value);
+            bounds::bounds(&object.value.shape, &to_world)
+        });
         Self {
             bank: SpectrumBank::new(wavelengths),
             grid,
@@ -160,7 +161,7 @@ impl<'a, T: Scalar> Builder<'a, T> {
             resolver: Resolver::default(),
             bounded: Vec::new(),
             unbounded: Vec::new(),
-            reach: bounds.map(|b| super::bounds::reach(&b)).fold(0.0, f64::max),
+            reach: bounds.map(|b| bounds::reach(&b)).fold(0.0, f64::max),
         }
     }
 
@@ -233,21 +234,17 @@ impl<'a, T: Scalar> Builder<'a, T> {
         Some(Placement { to_world, inverse })
     }
 
-    /// A surface as the loop reads it.
-    fn record(&mut self, object: &Object, surface: &Surface) -> Record<T> {
-        surface.record(object.size, |value| match value {
-            Value::Number(_) => Vec::new(),
-            Value::Spectrum(spectrum) => vec![self.spectrum(spectrum)],
-            Value::Index(index) => self.refractive_index(index).into(),
-        })
-    }
-
     /// Gives object `index` its appearance, and makes a light of it if it can be sampled.
-    fn dress(&mut self, scene: &Scene, index: usize, placement: &Placement) {
+    fn appearance(&mut self, scene: &Scene, index: usize, placement: &Placement) {
         let object = &scene.objects[index].value;
         let material = &scene.materials[object.material].value;
+        let surface = material.surface.record(object.size, |value| match value {
+            Value::Spectrum(spectrum) => vec![self.spectrum(spectrum)],
+            Value::Index(index) => self.refractive_index(index).into(),
+            Value::Number(_) | Value::Point(_) | Value::Direction(_) => Vec::new(),
+        });
         let mut appearance = Appearance {
-            surface: self.record(object, &material.surface),
+            surface,
             emission: None,
             emits: [false; 2],
             light: None,
@@ -255,73 +252,57 @@ impl<'a, T: Scalar> Builder<'a, T> {
         };
         if let Some(emission) = &material.emission {
             appearance.emission = Some(self.spectrum(&emission.radiance));
-            appearance.emits = sides(emission.sides);
-            let kind = object.shape.kind();
-            if let Some((shape, area)) = light::of_shape(
-                kind,
-                &placement.to_world,
-                &placement.inverse,
-                appearance.emits,
-            ) {
-                let power = area * std::f64::consts::PI * strength(&emission.radiance);
-                if power > 0.0 {
-                    appearance.light = Some(self.lights.len() as u32);
-                    self.light(shape, power, emission, index as u32);
-                }
+            appearance.emits = emission.sides.front_and_back();
+            let light = LightShape::of_shape(&Emitting {
+                form: object
+                    .shape
+                    .kind()
+                    .map_or(Emitter::Unsampled, ShapeKind::emitter),
+                to_world: &placement.to_world,
+                inverse: &placement.inverse,
+                emits: appearance.emits,
+            });
+            if let Some((shape, area)) = light {
+                let power = area * PI * strength(&emission.radiance);
+                appearance.light = self.light(shape, power, &emission.radiance, index as u32);
             }
         }
         self.appearances.push(appearance);
     }
 
-    fn light(&mut self, shape: LightShape<T>, power: f64, emission: &Emission, object: u32) {
-        let spectrum = self.spectrum(&emission.radiance);
-        let light = LaneLight {
-            shape,
-            probability: T::default(),
-            below: T::default(),
-            spectrum,
-            object,
-        };
-        self.lights.push((light, power));
-    }
-
-    /// About the area, over π, that parallel light falls on; planes alone have no size to tell.
-    fn lit_area(&self) -> f64 {
-        if self.reach > 0.0 {
-            self.reach * self.reach
-        } else {
-            1.0
-        }
-    }
-
-    /// A light without a surface.
-    fn free_light(&mut self, scene: &Scene, light: &Light) {
-        let scalars = |v: DVec3| v.to_array().map(T::from_f64);
-        let (shape, spectrum, power) = match light {
-            Light::Point { at, intensity } => (
-                LightShape::Point(scalars(*at - scene.camera.from)),
-                intensity,
-                4.0 * std::f64::consts::PI * strength(intensity),
-            ),
-            Light::Directional {
-                direction,
-                irradiance,
-            } => (
-                LightShape::Directional(scalars(-*direction)),
-                irradiance,
-                std::f64::consts::PI * self.lit_area() * strength(irradiance),
-            ),
-        };
-        if power > 0.0 {
+    /// Lists a light of some power and returns its number.
+    fn light(
+        &mut self,
+        shape: LightShape<T>,
+        power: f64,
+        spectrum: &Spectrum,
+        object: u32,
+    ) -> Option<u32> {
+        (power > 0.0).then(|| {
             let light = LaneLight {
                 shape,
                 probability: T::default(),
                 below: T::default(),
                 spectrum: self.spectrum(spectrum),
-                object: u32::MAX,
+                object,
             };
             self.lights.push((light, power));
-        }
+            self.lights.len() as u32 - 1
+        })
+    }
+
+    /// Lists a light without a surface.
+    fn source(&mut self, light: &Light, camera: DVec3) -> Option<u32> {
+        let spectrum = light.spectrum()?;
+        // Planes alone have no size to tell what parallel light falls on.
+        let area = if self.reach > 0.0 {
+            self.reach * self.reach
+        } else {
+            1.0
+        };
+        let power = light.kind.power(area) * strength(spectrum);
+        let shape = LightShape::of_source(light, camera)?;
+        self.light(shape, power, spectrum, u32::MAX)
     }
 
     /// Probabilities of the lights: half in equal parts, half by power, so that a weak light close
@@ -357,15 +338,6 @@ const START: f64 = 8.0;
 
 /// Step of the probabilities of lights: that of uniform numbers in single precision, 2⁻²⁴.
 const PROBABILITY_STEP: f64 = 1.0 / (1 << 24) as f64;
-
-/// Whether front and back emit.
-fn sides(sides: Sides) -> [bool; 2] {
-    match sides {
-        Sides::Front => [true, false],
-        Sides::Back => [false, true],
-        Sides::Both => [true, true],
-    }
-}
 
 /// How much a spectrum counts when lights are chosen: its luminance, and a little of its plain
 /// mean so that light outside of the visible is still sampled.

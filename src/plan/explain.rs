@@ -4,11 +4,10 @@ use std::collections::BTreeMap;
 
 use super::bounds::{Blur, GAP_SHARE, PIXEL_SHARE};
 use super::choose::{Doubt, Precision, PrecisionReason};
-use super::{Plan, Tables};
+use super::{Plan, of_model};
 use crate::film::pixels::Pixels;
 use crate::integrate::model::Model;
 use crate::integrate::needs::Needs;
-use crate::light::LightShape;
 use crate::math::lanes::Scalar;
 use crate::sample::replicates::Replicates;
 use crate::scene::{Object, Scene, Shape};
@@ -110,34 +109,15 @@ struct Sampled {
 fn sampled<T: Scalar>(model: &Model<T>) -> Vec<Sampled> {
     let lights = model.lights.iter().map(|light| Sampled {
         object: light.object,
-        kind: match light.shape {
-            LightShape::Point(_) => "point light",
-            LightShape::Directional(_) => "directional light",
-            _ => "surface",
-        },
-        how: strategy(&light.shape),
+        kind: light.shape.name(),
+        how: light.shape.strategy(),
         probability: light.probability.to_f64(),
     });
     lights.collect()
 }
 
-fn strategy<T>(shape: &LightShape<T>) -> &'static str {
-    match shape {
-        LightShape::Rectangle(_) => "by solid angle near, by area far",
-        LightShape::Disk(_) | LightShape::Parallelogram(_) => "by area",
-        LightShape::Sphere(_) => "by the solid angle of its cone from outside, by area inside",
-        LightShape::Cube(_) => "by the area of its visible faces",
-        LightShape::Cylinder(_) => "by the size of its visible parts",
-        LightShape::Mapped(_) => "as the round shape that it is an image of",
-        LightShape::Point(_) | LightShape::Directional(_) => "by its one direction",
-    }
-}
-
 fn lights(scene: &Scene, plan: &Plan) -> Vec<String> {
-    let sampled = match &plan.tables {
-        Tables::Single(tables) => sampled(&tables.0),
-        Tables::Double(tables) => sampled(&tables.0),
-    };
+    let sampled = of_model!(&plan.tables, model => sampled(model));
     let mut by_strategy = BTreeMap::<&str, Vec<String>>::new();
     for light in &sampled {
         let object = scene.objects.get(light.object as usize);
@@ -294,16 +274,9 @@ pub fn doubt(plan: &Plan) -> Option<String> {
 }
 
 fn intersection(scene: &Scene, plan: &Plan) -> String {
-    let (hierarchy, occluders) = match &plan.tables {
-        Tables::Single(tables) => (
-            tables.0.hierarchy.is_some(),
-            tables.0.occluders.objects.len(),
-        ),
-        Tables::Double(tables) => (
-            tables.0.hierarchy.is_some(),
-            tables.0.occluders.objects.len(),
-        ),
-    };
+    let (hierarchy, occluders) = of_model!(&plan.tables, model => {
+        (model.hierarchy.is_some(), model.occluders.objects.len())
+    });
     let count = scene.objects.len();
     let mut text = format!(
         "intersection: {}; what lanes leave undecided goes to the exact ladder",
@@ -319,10 +292,7 @@ fn intersection(scene: &Scene, plan: &Plan) -> String {
             "; shadow rays ask {occluders}, as the others can hide no light"
         ));
     }
-    let finders = match &plan.tables {
-        Tables::Single(tables) => finders(&tables.0.implicits),
-        Tables::Double(tables) => finders(&tables.0.implicits),
-    };
+    let finders = of_model!(&plan.tables, model => finders(&model.implicits));
     for (name, how) in FINDERS {
         let count = finders.iter().filter(|finder| **finder == name).count();
         if count > 0 {
@@ -384,10 +354,7 @@ fn memory(scene: &Scene, plan: &Plan) -> String {
     let [width, height] = scene.image.size.map(u64::from);
     let pixel = Pixels::bytes_per_pixel(plan.choices.replicates, scene.image.spp);
     let sums = width * height * pixel as u64;
-    let spectra = match &plan.tables {
-        Tables::Single(tables) => tables.0.spectra.bytes(),
-        Tables::Double(tables) => tables.0.spectra.bytes(),
-    };
+    let spectra = of_model!(&plan.tables, model => model.spectra.bytes());
     let mebibytes = |bytes: f64| bytes / f64::from(1 << 20);
     format!(
         "memory: {:.1} MiB of sums, {:.1} MiB of spectra",

@@ -31,6 +31,23 @@ pub struct Plan {
     pub left_out: Vec<String>,
 }
 
+/// Evaluates an expression about the model, in whichever precision it is.
+macro_rules! of_model {
+    ($tables:expr, $model:ident => $do:expr) => {
+        match $tables {
+            $crate::plan::Tables::Single(tables) => {
+                let $model = &tables.0;
+                $do
+            }
+            $crate::plan::Tables::Double(tables) => {
+                let $model = &tables.0;
+                $do
+            }
+        }
+    };
+}
+use of_model;
+
 /// Tables of the loop in one precision.
 #[derive(Debug)]
 pub enum Tables {
@@ -85,10 +102,7 @@ impl Plan {
 
     /// What can happen in the loop.
     pub fn needs(&self) -> Needs {
-        match &self.tables {
-            Tables::Single(scene) => scene.0.needs,
-            Tables::Double(scene) => scene.0.needs,
-        }
+        of_model!(&self.tables, model => model.needs)
     }
 
     /// Takes other random numbers: the plan is then that of the scene with this seed.

@@ -8,6 +8,7 @@ use std::ops::RangeInclusive;
 
 use glam::DVec3;
 
+use super::FinderChoice;
 use super::names::{nearest, one_of};
 use super::tree::{Node, Place, Table, Value};
 
@@ -23,24 +24,14 @@ pub(super) struct Complaint {
 }
 
 impl Complaint {
-    pub fn new(place: Place, message: impl Into<String>) -> Self {
+    pub fn new(place: Place, message: impl Into<String>, expected: Option<String>) -> Self {
         Self {
             place,
             message: message.into(),
-            expected: None,
+            expected,
             suggestion: None,
             missing: false,
         }
-    }
-
-    pub fn expected(mut self, expected: impl Into<String>) -> Self {
-        self.expected = Some(expected.into());
-        self
-    }
-
-    pub fn suggest(mut self, suggestion: Option<String>) -> Self {
-        self.suggestion = suggestion;
-        self
     }
 }
 
@@ -56,13 +47,28 @@ pub(super) struct Report {
 const SEARCHES: usize = 64;
 
 impl Report {
-    pub fn add(&self, complaint: Complaint) {
+    fn add(&self, complaint: Complaint) {
         self.complaints.borrow_mut().push(complaint);
     }
 
-    /// Adds a complaint and returns `None`, which is what a reader then returns.
-    pub fn fail<T>(&self, complaint: Complaint) -> Option<T> {
-        self.add(complaint);
+    /// Complains and returns `None`, which is what a reader then returns.
+    pub fn fail<T>(
+        &self,
+        place: Place,
+        message: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Option<T> {
+        self.complain(place, message, Some(expected.into()))
+    }
+
+    /// The same where it may be unknown what would have been right.
+    pub fn complain<T>(
+        &self,
+        place: Place,
+        message: impl Into<String>,
+        expected: Option<String>,
+    ) -> Option<T> {
+        self.add(Complaint::new(place, message, expected));
         None
     }
 
@@ -90,18 +96,14 @@ impl Report {
     ) -> Option<T> {
         let search = self.searches.get() < SEARCHES;
         self.searches.set(self.searches.get() + 1);
-        let suggestion = if search { nearest(name, names) } else { None };
-        self.fail(
-            Complaint::new(place, message)
-                .expected(one_of(names))
-                .suggest(suggestion),
-        )
+        let mut complaint = Complaint::new(place, message, Some(one_of(names)));
+        complaint.suggestion = search.then(|| nearest(name, names)).flatten();
+        self.add(complaint);
+        None
     }
 
     pub fn wrong_type<T>(&self, what: &str, node: &Node, expected: &str) -> Option<T> {
-        self.fail(
-            Complaint::new(node.place, format!("{what} is {}", node.kind())).expected(expected),
-        )
+        self.fail(node.place, format!("{what} is {}", node.kind()), expected)
     }
 
     /// A finite number.
@@ -116,9 +118,7 @@ impl Report {
             Value::Float(number) if number.is_finite() => Some(*number),
             Value::Float(number) => {
                 let name = if number.is_nan() { "NaN" } else { "infinite" };
-                self.fail(
-                    Complaint::new(node.place, format!("{what} is {name}")).expected(expected),
-                )
+                self.fail(node.place, format!("{what} is {name}"), expected)
             }
             _ => self.wrong_type(what, node, expected),
         }
@@ -136,7 +136,7 @@ impl Report {
         if test(number) {
             return Some(number);
         }
-        self.fail(Complaint::new(node.place, format!("{what} is {number}")).expected(expected))
+        self.fail(node.place, format!("{what} is {number}"), expected)
     }
 
     /// A number above zero.
@@ -149,11 +149,12 @@ impl Report {
         let expected = format!("an integer from {} to {}", range.start(), range.end());
         match &node.value {
             Value::Integer(number) if range.contains(number) => Some(*number),
-            Value::Integer(number) => self
-                .fail(Complaint::new(node.place, format!("{what} is {number}")).expected(expected)),
-            Value::Float(number) => self.fail(
-                Complaint::new(node.place, format!("{what} is {number:?}")).expected(expected),
-            ),
+            Value::Integer(number) => {
+                self.fail(node.place, format!("{what} is {number}"), expected)
+            }
+            Value::Float(number) => {
+                self.fail(node.place, format!("{what} is {number:?}"), expected)
+            }
             _ => self.wrong_type(what, node, &expected),
         }
     }
@@ -178,14 +179,24 @@ impl Report {
         }
     }
 
+    /// An array of `N` entries.
+    pub fn array<'a, const N: usize>(
+        &self,
+        what: &str,
+        node: &'a Node,
+        expected: &str,
+    ) -> Option<&'a [Node; N]> {
+        let nodes = self.list(what, node, expected)?;
+        <&[Node; N]>::try_from(nodes).ok().or_else(|| {
+            let message = format!("{what} has {} entries", nodes.len());
+            self.fail(node.place, message, expected)
+        })
+    }
+
     /// `N` finite numbers.
     pub fn numbers<const N: usize>(&self, what: &str, node: &Node) -> Option<[f64; N]> {
         let expected = format!("an array of {N} finite numbers");
-        let nodes = self.list(what, node, &expected)?;
-        if nodes.len() != N {
-            let message = format!("{what} has {} entries", nodes.len());
-            return self.fail(Complaint::new(node.place, message).expected(expected));
-        }
+        let nodes = self.array::<N>(what, node, &expected)?;
         let mut numbers = [0.0; N];
         for (i, (number, node)) in numbers.iter_mut().zip(nodes).enumerate() {
             *number = self.number(&format!("{what}[{i}]"), node)?;
@@ -203,8 +214,7 @@ impl Report {
         let vector = self.vector(what, node)?;
         if vector == DVec3::ZERO {
             let message = format!("{what} is the zero vector");
-            return self
-                .fail(Complaint::new(node.place, message).expected("a vector with a direction"));
+            return self.fail(node.place, message, "a vector with a direction");
         }
         // Bringing the largest component to ±1 first keeps squares from under- and overflowing
         // and leaves multiples of the axes exact.
@@ -212,17 +222,35 @@ impl Report {
         Some(scaled / scaled.length())
     }
 
-    /// One of several words.
-    pub fn choice<T: Copy>(&self, what: &str, node: &Node, choices: &[(&str, T)]) -> Option<T> {
-        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+    /// One of several things by its name.
+    pub fn choice<T: Copy>(
+        &self,
+        what: &str,
+        node: &Node,
+        all: &[T],
+        name: impl Fn(T) -> &'static str,
+    ) -> Option<T> {
+        let names: Vec<&str> = all.iter().map(|one| name(*one)).collect();
         let Value::Text(text) = &node.value else {
             return self.wrong_type(what, node, &one_of(&names));
         };
-        match choices.iter().find(|(name, _)| name == text) {
-            Some((_, choice)) => Some(*choice),
+        match all.iter().find(|one| name(**one) == text) {
+            Some(one) => Some(*one),
             None => self.unknown(node.place, format!("{what} is \"{text}\""), text, &names),
         }
     }
+
+    /// A finder of implicit surfaces.
+    pub fn finder(&self, what: &str, node: &Node) -> Option<FinderChoice> {
+        let (_, finder) = self.choice(what, node, FinderChoice::NAMES, |(name, _)| name)?;
+        Some(finder)
+    }
+}
+
+/// All values, if nothing is wrong with any. All are read before any is missed, so that the first
+/// complaint is the first in the file.
+pub(super) fn every<T>(values: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+    values.collect::<Vec<_>>().into_iter().collect()
 }
 
 /// A table whose keys are known.
@@ -301,7 +329,7 @@ impl<'a> Fields<'a> {
     /// Complains that something is missing here.
     pub fn missing<T>(&self, message: String, expected: &str) -> Option<T> {
         if !self.misspelt {
-            let mut complaint = Complaint::new(self.place, message).expected(expected);
+            let mut complaint = Complaint::new(self.place, message, Some(expected.to_owned()));
             complaint.missing = true;
             self.report.add(complaint);
         }
@@ -359,8 +387,7 @@ impl<'a> Fields<'a> {
             [(first, _), (second, entry), ..] => {
                 let message = format!("\"{second}\" contradicts \"{first}\" in {}", self.what);
                 let expected = format!("only {}", one_of(keys));
-                self.report
-                    .fail(Complaint::new(entry.key_place, message).expected(expected))
+                self.report.fail(entry.key_place, message, expected)
             }
         }
     }

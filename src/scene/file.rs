@@ -132,11 +132,7 @@ pub fn parse(
         setting.apply(&report, &mut asked);
     }
     if let Some(name) = &options.finder {
-        let place = Place {
-            origin: origins.texts.len() - 1,
-            start: 0,
-            end: name.len(),
-        };
+        let place = Place::new(origins.texts.len() - 1, 0..name.len());
         overlay::use_finder(&mut asked, place, name);
     }
     let parts = build::scene(&report, base_dir, &asked);
@@ -160,10 +156,10 @@ pub fn parse(
             truth: parts.look.truth,
         }),
         (Some(complaint), _) => Err(invalid(&origins, complaint)),
-        (None, None) => Err(invalid(
-            &origins,
-            Complaint::new(START, "the file holds no scene"),
-        )),
+        (None, None) => {
+            let complaint = Complaint::new(Place::new(0, 0..0), "the file holds no scene", None);
+            Err(invalid(&origins, complaint))
+        }
     }
 }
 
@@ -185,13 +181,6 @@ pub fn panel_names(path_for_messages: &str, text: &str) -> Result<Vec<String>, S
     }
 }
 
-/// The first byte of the file.
-const START: Place = Place {
-    origin: 0,
-    start: 0,
-    end: 0,
-};
-
 /// The file, the settings, the panel, and last the finder.
 fn origins(path: &str, text: &str, options: &Overrides) -> Origins {
     let mut texts = vec![(Origin::File(path.to_owned()), text.to_owned())];
@@ -206,18 +195,13 @@ fn origins(path: &str, text: &str, options: &Overrides) -> Origins {
 
 fn parse_tree(origins: &Origins, text: &str) -> Result<Table, SceneError> {
     tree::parse(text, 0, 0).map_err(|error| {
-        let span = error.span().unwrap_or(0..0);
-        let place = Place {
-            origin: 0,
-            start: span.start,
-            end: span.end,
-        };
+        let place = Place::new(0, error.span().unwrap_or(0..0));
         let words = error.message().trim().replace('\n', ", ");
         let (message, expected) = match words.split_once(", expected ") {
             Some((message, expected)) => (message.to_owned(), expected.to_owned()),
             None => (words, "TOML".to_owned()),
         };
-        invalid(origins, Complaint::new(place, message).expected(expected))
+        invalid(origins, Complaint::new(place, message, Some(expected)))
     })
 }
 
@@ -255,7 +239,7 @@ fn panels(report: &Report, root: &mut Table) -> Vec<Panel> {
         };
         if panels.iter().any(|other| other.name == panel.name) {
             let message = format!("the panel name \"{}\" is used twice", panel.name);
-            report.add(Complaint::new(panel.name_place, message).expected("a name of its own"));
+            report.fail::<()>(panel.name_place, message, "a name of its own");
         }
         panels.push(panel);
     }
@@ -298,11 +282,7 @@ fn choose<'a>(report: &Report, panels: &'a [Panel], options: &Overrides) -> Opti
     let found = panels.iter().find(|panel| panel.name == *name);
     found.or_else(|| {
         let names: Vec<&str> = panels.iter().map(|panel| panel.name.as_str()).collect();
-        let place = Place {
-            origin: options.set.len() + 1,
-            start: 0,
-            end: name.len(),
-        };
+        let place = Place::new(options.set.len() + 1, 0..name.len());
         report.unknown(place, format!("there is no panel \"{name}\""), name, &names)
     })
 }

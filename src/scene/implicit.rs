@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use num_rational::BigRational;
 
-use super::fields::{Complaint, Fields, Report};
+use super::fields::{Fields, Report};
 use super::objects::SHAPES;
 use super::tree::{Node, Place, Value};
 use super::{FinderChoice, Implicit};
@@ -62,8 +62,7 @@ pub(super) fn read(report: &Report, node: &Node, default: &DefaultFinder) -> Opt
         _ => report.wrong_type(what, node, "true or false"),
     });
     let finder = fields.optional("finder", *default, |what, node| {
-        let finder = report.choice(what, node, FinderChoice::NAMES)?;
-        Some((finder, Some(node.place)))
+        Some((report.finder(what, node)?, Some(node.place)))
     });
     let steps = fields.optional("steps", STEPS, |what, node| {
         report.count(what, node, 1..=MOST_STEPS)
@@ -100,7 +99,7 @@ fn check(
         let message = "object.shape.implicit is defined nowhere in its box";
         let expected = "a field that has values in \"inside\": no root of a negative number, \
                         logarithm of zero or division by zero everywhere";
-        return report.fail(Complaint::new(written.place, message.to_owned()).expected(expected));
+        return report.fail(written.place, message.to_owned(), expected);
     }
     if implicit.finder != FinderChoice::Polynomial || polynomial {
         return Some(());
@@ -110,7 +109,7 @@ fn check(
             "the finder \"polynomial\" for a closed surface, whose caps are no polynomial";
         let expected = "\"auto\", \"interval\", \"sphere-trace\" or \"sign-change\"";
         let place = chosen_at.unwrap_or(written.place);
-        return report.fail(Complaint::new(place, message.to_owned()).expected(expected));
+        return report.fail(place, message.to_owned(), expected);
     }
     // The finder may be asked for far from the field.
     let text = report.text("object.shape.implicit", written)?;
@@ -119,7 +118,7 @@ fn check(
     let message =
         format!("the finder \"polynomial\" for a field that is no polynomial: {shown}{rest}");
     let expected = "\"auto\", \"interval\", \"sphere-trace\" or \"sign-change\"";
-    report.fail(Complaint::new(chosen_at.unwrap_or(written.place), message).expected(expected))
+    report.fail(chosen_at.unwrap_or(written.place), message, expected)
 }
 
 /// The field of an expression. What looks like a name of a surface is taken for a misspelt one.
@@ -148,7 +147,7 @@ fn named_field(
         Err(error) => {
             let place = fields.get("parameters").map_or(fields.place, |n| n.place);
             let message = format!("with these parameters of {}: {error}", surface.name);
-            fields.report.fail(Complaint::new(place, message))
+            fields.report.complain(place, message, None)
         }
     }
 }
@@ -178,8 +177,7 @@ fn parameters(
                 Ok(()) => Some(()),
                 Err(problem) => {
                     let error = ExpressionError::from(problem);
-                    let complaint = Complaint::new(entry.key_place, error.to_string());
-                    report.fail(complaint.expected(error.expected.unwrap_or_default()))
+                    report.complain(entry.key_place, error.to_string(), error.expected)
                 }
             },
         };
@@ -204,7 +202,7 @@ fn value(report: &Report, what: &str, node: &Node, known: &[Parameter]) -> Optio
             let plain = node.written.as_ref().map(|text| text.replace('_', ""));
             plain.and_then(|text| rational(&text)).or_else(|| {
                 let message = format!("{what} is beyond all measure");
-                report.fail(Complaint::new(node.place, message).expected("a number"))
+                report.fail(node.place, message, "a number")
             })
         }
         Value::Text(text) => match parse_constant(text, known) {
@@ -219,9 +217,7 @@ fn value(report: &Report, what: &str, node: &Node, known: &[Parameter]) -> Optio
 fn complain<T>(report: &Report, node: &Node, text: &str, error: &ExpressionError) -> Option<T> {
     let place = inner(node, text, &error.span);
     if error.names.is_empty() {
-        let mut complaint = Complaint::new(place, error.to_string());
-        complaint.expected.clone_from(&error.expected);
-        return report.fail(complaint);
+        return report.complain(place, error.to_string(), error.expected.clone());
     }
     let names: Vec<&str> = error.names.iter().map(String::as_str).collect();
     let name = text.get(error.span.clone()).unwrap_or("");
@@ -257,17 +253,11 @@ fn inner(node: &Node, text: &str, span: &Range<usize>) -> Place {
 }
 
 fn clip_box(report: &Report, what: &str, node: &Node) -> Option<[DVec3; 2]> {
-    let nodes = report.list(what, node, BOX)?;
-    let [low, high] = nodes else {
-        let message = format!("{what} has {} entries", nodes.len());
-        return report.fail(Complaint::new(node.place, message).expected(BOX));
-    };
+    let [low, high] = report.array(what, node, BOX)?;
     let low = report.vector(&format!("{what}[0]"), low);
     let high = report.vector(&format!("{what}[1]"), high);
     let (low, high) = (low?, high?);
-    let fail = |words: &str| {
-        report.fail(Complaint::new(node.place, format!("{what} is {words}")).expected(BOX))
-    };
+    let fail = |words: &str| report.fail(node.place, format!("{what} is {words}"), BOX);
     if !low.cmplt(high).all() {
         return fail("a box without inside");
     }

@@ -1,6 +1,6 @@
 //! Reading refractive indices.
 
-use super::fields::{Complaint, Fields};
+use super::fields::{Fields, every};
 use super::names::{GLASSES, METALS};
 use super::spectra::Spectra;
 use super::tree::{Node, Value};
@@ -75,13 +75,10 @@ fn cauchy(spectra: &Spectra<'_>, path: &str, node: &Node) -> Option<RefractiveIn
     let nodes = report.list(path, node, expected)?;
     if !(2..=3).contains(&nodes.len()) {
         let message = format!("{path} has {} entries", nodes.len());
-        return report.fail(Complaint::new(node.place, message).expected(expected));
+        return report.fail(node.place, message, expected);
     }
-    let numbers: Option<Vec<f64>> = nodes
-        .iter()
-        .enumerate()
-        .map(|(i, node)| report.number(&format!("{path}[{i}]"), node))
-        .collect();
+    let numbers = nodes.iter().enumerate();
+    let numbers = every(numbers.map(|(i, node)| report.number(&format!("{path}[{i}]"), node)));
     numbers.map(RefractiveIndex::Cauchy)
 }
 
@@ -108,11 +105,7 @@ fn check_index(
     index: &RefractiveIndex,
 ) -> Option<()> {
     let expected = "a finite index of refraction of at least 1 at all visible wavelengths";
-    let fail = |message: String| {
-        spectra
-            .report
-            .fail(Complaint::new(node.place, message).expected(expected))
-    };
+    let fail = |message: String| spectra.report.fail(node.place, message, expected);
     if let RefractiveIndex::Constant(n) = index {
         return if *n >= 1.0 {
             Some(())

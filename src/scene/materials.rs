@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use super::fields::{Complaint, Fields};
+use super::fields::{Fields, every};
 use super::names::one_of;
 use super::quantities;
 use super::spectra::Spectra;
@@ -78,20 +78,18 @@ pub(super) fn read(spectra: &Spectra<'_>, node: Option<&Node>) -> Option<Materia
             .report
             .wrong_type("materials", node, "a table of named materials");
     };
-    let mut names = Vec::with_capacity(table.entries.len());
-    let mut read = Vec::with_capacity(table.entries.len());
-    for entry in &table.entries {
-        names.push(entry.key.clone());
-        read.push(
-            material(spectra, &entry.key, &entry.node).map(|value| Named {
-                name: entry.key.clone(),
-                value,
-            }),
-        );
-    }
+    let read = table.entries.iter().map(|entry| {
+        let name = entry.key.clone();
+        let value = material(spectra, &name, &entry.node)?;
+        Some(Named { name, value })
+    });
     Some(Materials {
-        names,
-        checked: read.into_iter().collect(),
+        names: table
+            .entries
+            .iter()
+            .map(|entry| entry.key.clone())
+            .collect(),
+        checked: every(read),
     })
 }
 
@@ -116,14 +114,8 @@ fn surface(spectra: &Spectra<'_>, fields: &Fields<'_>) -> Option<Surface> {
     };
     let kind = kind(key, node)?;
     let main = main(spectra, &fields.path(key), node, kind);
-    let beside = kind.declaration().beside.iter();
-    let beside = beside.map(|own| quantities::beside(spectra, fields, own));
-    // All are read before any is missed, so that the first complaint is the first in the file.
-    let beside: Vec<_> = beside.collect();
-    let mut values = main?;
-    for own in beside {
-        values.extend(own?);
-    }
+    let beside = quantities::all(spectra, fields, kind.declaration().beside);
+    let values = [main?, beside?].concat();
     Some(Surface { kind, values })
 }
 
@@ -184,29 +176,26 @@ fn lonely(fields: &Fields<'_>, kind: Option<&str>) -> Option<()> {
             let value = declarations().find(|own| own.main.key == owner);
             let value = value.map_or("", |own| quantities::form(own.main.quantity));
             return fields.report.fail(
-                Complaint::new(entry.key_place, message)
-                    .expected(format!("{owner} = {value} besides")),
+                entry.key_place,
+                message,
+                format!("{owner} = {value} besides"),
             );
         }
     }
     Some(())
 }
+
 fn emission(spectra: &Spectra<'_>, fields: &Fields<'_>) -> Option<Option<Emission>> {
-    let choices = [
-        ("front", Sides::Front),
-        ("back", Sides::Back),
-        ("both", Sides::Both),
-    ];
     let sides = fields.optional("sides", Sides::Front, |what, node| {
-        spectra.report.choice(what, node, &choices)
+        spectra
+            .report
+            .choice(what, node, &Sides::ALL, |sides| sides.name())
     });
     if let (None, Some(entry)) = (fields.get("emit"), fields.table.entry("sides")) {
         let message = format!("{} without emit", fields.path("sides"));
-        let names = choices.map(|(name, _)| name);
-        let expected = format!("emit = spectrum besides sides = {}", one_of(&names));
-        return spectra
-            .report
-            .fail(Complaint::new(entry.key_place, message).expected(expected));
+        let names = one_of(&Sides::ALL.map(|sides| sides.name()));
+        let expected = format!("emit = spectrum besides sides = {names}");
+        return spectra.report.fail(entry.key_place, message, expected);
     }
     let radiance = fields.optional("emit", None, |what, node| {
         spectra.spectrum(what, node, Role::Emission).map(Some)

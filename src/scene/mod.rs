@@ -26,7 +26,8 @@ use std::path::Path;
 
 use glam::DVec3;
 
-pub use crate::camera::{Camera, Lens, Projection};
+pub use crate::camera::{Camera, Lens, Projection, ProjectionKind};
+pub use crate::light::{Place, Source as Light};
 pub use crate::material::Surface;
 use crate::math::affine::Affine;
 pub use crate::sample::SamplerKind;
@@ -163,6 +164,17 @@ pub enum PrecisionChoice {
     F64,
 }
 
+impl PrecisionChoice {
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+}
+
 /// A placed shape with its material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Object {
@@ -206,21 +218,20 @@ pub enum Sides {
     Both,
 }
 
-/// A light that has no surface.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Light {
-    /// Isotropic point source.
-    Point {
-        /// Position, scene units.
-        at: DVec3,
-        /// Radiant intensity, W·sr⁻¹·nm⁻¹.
-        intensity: Spectrum,
-    },
-    /// Parallel light from infinity.
-    Directional {
-        /// Direction in which the light travels (unit).
-        direction: DVec3,
-        /// Irradiance on a surface facing the light, W·m⁻²·nm⁻¹.
-        irradiance: Spectrum,
-    },
+impl Sides {
+    pub(crate) const ALL: [Self; 3] = [Self::Front, Self::Back, Self::Both];
+
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Front => "front",
+            Self::Back => "back",
+            Self::Both => "both",
+        }
+    }
+
+    /// Whether front and back are among them.
+    pub fn front_and_back(self) -> [bool; 2] {
+        [self != Self::Back, self != Self::Front]
+    }
 }

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
-use super::fields::{Complaint, Fields, Report};
+use super::fields::{Fields, Report, every};
 use super::implicit::{self, DefaultFinder};
 use super::names::one_of;
 use super::transform;
@@ -62,11 +62,8 @@ pub(super) fn read(
         })
     };
     let mut used = HashSet::new();
-    let mut objects = Vec::with_capacity(nodes.len());
-    for (index, node) in nodes.iter().enumerate() {
-        objects.push(object(report, node, index, finder, &find, &mut used));
-    }
-    objects.into_iter().collect()
+    let nodes = nodes.iter().enumerate();
+    every(nodes.map(|(index, node)| object(report, node, index, finder, &find, &mut used)))
 }
 
 fn object(
@@ -84,7 +81,7 @@ fn object(
             return Some(Some(name));
         }
         let message = format!("the object name \"{name}\" is used twice");
-        report.fail(Complaint::new(node.place, message).expected("a name of its own"))
+        report.fail(node.place, message, "a name of its own")
     });
     let sized = fields.required("shape", &one_of(SHAPES), |_, node| {
         shape(report, node, finder)
@@ -130,11 +127,7 @@ fn place(transform: Option<Affine>, sized: &Sized) -> Affine {
 fn shape(report: &Report, node: &Node, finder: &DefaultFinder) -> Option<Sized> {
     match &node.value {
         Value::Text(_) => {
-            let choices: Vec<_> = ShapeKind::ALL
-                .iter()
-                .map(|kind| (kind.name(), *kind))
-                .collect();
-            let kind = report.choice("object.shape", node, &choices)?;
+            let kind = report.choice("object.shape", node, ShapeKind::ALL, ShapeKind::name)?;
             Some(plain(Shape::Canonical(kind), DVec3::ONE))
         }
         Value::Table(table) if table.get("implicit").is_some() => {

@@ -1,13 +1,13 @@
 //! Laying panels and settings over the file.
 
-use super::fields::{Complaint, Report};
-use super::materials;
+use super::fields::Report;
 use super::tree::{self, Entry, Node, Place, Table, Value};
+use super::{ProjectionKind, materials};
 
 /// Keys that exclude each other. When something laid over brings one of them, the others give
 /// way, so that a panel can turn a diffuse wall into a mirror without a contradiction.
 const RIVALS: &[&[&str]] = &[
-    &["fov", "orthographic"],
+    ProjectionKind::KEYS,
     &[
         "table",
         "csv",
@@ -118,18 +118,14 @@ pub(super) struct Setting {
 impl Setting {
     /// Reads `key` and `value`; the argument's text is `key=value`, its origin `origin`.
     pub fn parse(report: &Report, origin: usize, key: &str, value: &str) -> Option<Self> {
-        let key_place = Place {
-            origin,
-            start: 0,
-            end: key.len(),
-        };
+        let key_place = Place::new(origin, 0..key.len());
         let Ok(keys) = toml_edit::Key::parse(key) else {
-            let complaint = Complaint::new(key_place, format!("\"{key}\" is not a path"));
-            return report.fail(complaint.expected("dotted keys, such as camera.lens.radius=0.3"));
+            let expected = "dotted keys, such as camera.lens.radius=0.3";
+            return report.fail(key_place, format!("\"{key}\" is not a path"), expected);
         };
         if keys.len() > DEPTH {
-            let complaint = Complaint::new(key_place, format!("path of {} keys", keys.len()));
-            return report.fail(complaint.expected(format!("at most {DEPTH} keys")));
+            let message = format!("path of {} keys", keys.len());
+            return report.fail(key_place, message, format!("at most {DEPTH} keys"));
         }
         Some(Self {
             path: keys.iter().map(|key| key.get().to_owned()).collect(),
@@ -202,19 +198,21 @@ impl Setting {
                 match (found, rest) {
                     (Some(node), Some(rest)) => self.enter(report, node, rest, last, depth + 1),
                     (Some(node), None) => *node = self.node.clone(),
-                    (None, _) => report.add(
-                        Complaint::new(self.key_place, format!("{done} has no entry \"{key}\""))
-                            .expected(match count {
-                                0 => "nothing, as the array is empty".to_owned(),
-                                _ => format!("an index from 0 to {}", count - 1),
-                            }),
-                    ),
+                    (None, _) => {
+                        let message = format!("{done} has no entry \"{key}\"");
+                        let expected = match count {
+                            0 => "nothing, as the array is empty".to_owned(),
+                            _ => format!("an index from 0 to {}", count - 1),
+                        };
+                        report.fail::<()>(self.key_place, message, expected);
+                    }
                 }
             }
-            _ => report.add(
-                Complaint::new(self.key_place, format!("{done} is {kind} and has no keys"))
-                    .expected("the path of a value, or of a table or array that holds it"),
-            ),
+            _ => {
+                let message = format!("{done} is {kind} and has no keys");
+                let expected = "the path of a value, or of a table or array that holds it";
+                report.fail::<()>(self.key_place, message, expected);
+            }
         }
     }
 }
@@ -224,11 +222,7 @@ fn parse_value(report: &Report, key_place: Place, value: &str) -> Option<Node> {
     const BEFORE: &str = "v = ";
     let origin = key_place.origin;
     let begin = key_place.end + 1;
-    let place = Place {
-        origin,
-        start: begin,
-        end: begin + value.len(),
-    };
+    let place = Place::new(origin, begin..begin + value.len());
     // Positions are shifted so that they count from the start of the argument: first the words
     // put before the value are taken off, then the key is added.
     let mut padded = " ".repeat(begin);
@@ -238,17 +232,16 @@ fn parse_value(report: &Report, key_place: Place, value: &str) -> Option<Node> {
         Ok(table) if table.entries.len() == 1 => {
             table.entries.into_iter().next().map(|entry| entry.node)
         }
-        Ok(_) => report.fail(
-            Complaint::new(place, "the argument holds more than one value").expected("one value"),
-        ),
+        Ok(_) => report.fail(place, "the argument holds more than one value", "one value"),
         Err(_) if is_bare_word(value) => Some(Node {
             place,
             value: Value::Text(value.to_owned()),
             written: Some(value.into()),
         }),
         Err(error) => report.fail(
-            Complaint::new(place, format!("not a value: {}", error.message().trim()))
-                .expected("a TOML value, or a word"),
+            place,
+            format!("not a value: {}", error.message().trim()),
+            "a TOML value, or a word",
         ),
     }
 }

@@ -1,10 +1,10 @@
 //! Reading the values of declared parameters.
 
-use super::fields::{Complaint, Fields};
+use super::fields::{Fields, every};
 use super::index;
 use super::spectra::Spectra;
 use super::tree::{Node, Value as Written};
-use crate::declare::{Parameter, Quantity, Value};
+use crate::declare::{Parameter, Quantity, Usual, Value};
 use crate::spectrum::Spectrum;
 use crate::spectrum::ior::RefractiveIndex;
 
@@ -17,6 +17,8 @@ pub(super) fn form(quantity: Quantity) -> &'static str {
         Quantity::TwoSpectra(_) => "[spectrum, spectrum]",
         Quantity::Metal => "metal",
         Quantity::Glass => "glass",
+        Quantity::Point | Quantity::Direction => "[x, y, z]",
+        Quantity::Table(_) => "table",
     }
 }
 
@@ -24,11 +26,7 @@ pub(super) fn form(quantity: Quantity) -> &'static str {
 pub(super) fn keys(quantity: Quantity) -> &'static [&'static str] {
     match quantity {
         Quantity::Metal => &index::METAL_KEYS,
-        Quantity::True
-        | Quantity::Number { .. }
-        | Quantity::Spectrum(_)
-        | Quantity::TwoSpectra(_)
-        | Quantity::Glass => &[],
+        _ => &[],
     }
 }
 
@@ -44,12 +42,15 @@ pub(super) fn read(
     match quantity {
         Quantity::True => match node.value {
             Written::Bool(true) => Some(Vec::new()),
-            _ => report
-                .fail(Complaint::new(node.place, format!("{path} is not true")).expected("true")),
+            _ => report.fail(node.place, format!("{path} is not true"), "true"),
         },
-        Quantity::Number { range, .. } => {
+        Quantity::Number { unit, range } => {
             let allowed = |number| range.contains(number);
-            let number = report.number_that(path, node, &range.words(), allowed)?;
+            let expected = match unit {
+                "" => range.words(),
+                unit => format!("{}, {unit}", range.words()),
+            };
+            let number = report.number_that(path, node, &expected, allowed)?;
             Some(vec![Value::Number(number)])
         }
         Quantity::Spectrum(role) => {
@@ -58,17 +59,20 @@ pub(super) fn read(
         }
         Quantity::TwoSpectra(role) => {
             let expected = "an array of two spectra";
-            let nodes = report.list(path, node, expected)?;
-            let [first, second] = nodes else {
-                let message = format!("{path} has {} entries", nodes.len());
-                return report.fail(Complaint::new(node.place, message).expected(expected));
-            };
+            let [first, second] = report.array(path, node, expected)?;
             let first = spectra.spectrum(&format!("{path}[0]"), first, role);
             let second = spectra.spectrum(&format!("{path}[1]"), second, role);
             Some(vec![Value::Spectrum(first?), Value::Spectrum(second?)])
         }
         Quantity::Metal => Some(vec![Value::Index(metal(spectra, path, node, others)?)]),
         Quantity::Glass => Some(vec![Value::Index(index::glass(spectra, path, node)?)]),
+        Quantity::Point => Some(vec![Value::Point(report.vector(path, node)?)]),
+        Quantity::Direction => Some(vec![Value::Direction(report.direction(path, node)?)]),
+        Quantity::Table(parameters) => {
+            let keys: Vec<&str> = parameters.iter().map(|own| own.key).collect();
+            let fields = Fields::open(report, path, node, &keys)?;
+            all(spectra, &fields, parameters)
+        }
     }
 }
 
@@ -97,29 +101,40 @@ fn metal(
     }
 }
 
-/// Reads a parameter beside a kind's main one.
-pub(super) fn beside(
+/// A parameter as it is written, as messages show it.
+pub(super) fn assigned(parameter: &Parameter) -> String {
+    let Parameter { key, what, .. } = parameter;
+    match parameter.quantity {
+        Quantity::Number { unit, .. } if !unit.is_empty() => format!("{key} = {what}, {unit}"),
+        Quantity::Point | Quantity::Direction => format!("{key} = [x, y, z], {what}"),
+        _ => format!("{key} = {what}"),
+    }
+}
+
+/// Reads the values of parameters, in their order.
+pub(super) fn all<'p>(
     spectra: &Spectra<'_>,
     fields: &Fields<'_>,
-    parameter: &Parameter,
+    parameters: impl IntoIterator<Item = &'p Parameter>,
 ) -> Option<Vec<Value>> {
-    let Parameter {
-        key,
-        what,
-        quantity,
-        default,
-    } = *parameter;
-    let read = |path: &str, node: &Node| read(spectra, path, node, quantity, &[]);
-    let Some(default) = default else {
-        let unit = match quantity {
-            Quantity::Number { unit, .. } if !unit.is_empty() => format!(", {unit}"),
-            _ => String::new(),
-        };
-        return fields.required(key, &format!("{key} = {what}{unit}"), read);
-    };
-    let meant = match quantity {
-        Quantity::Spectrum(_) => Value::Spectrum(Spectrum::Constant(default)),
-        _ => Value::Number(default),
-    };
-    fields.optional(key, vec![meant], read)
+    let values = parameters.into_iter().map(|own| {
+        let read = |path: &str, node: &Node| read(spectra, path, node, own.quantity, &[]);
+        match own.default {
+            None => fields.required(own.key, &assigned(own), read),
+            Some(usual) => fields.optional(own.key, meant(own.quantity, usual), read),
+        }
+    });
+    Some(every(values)?.concat())
+}
+
+/// What is meant where the key of a quantity is left out.
+fn meant(quantity: Quantity, usual: Usual) -> Vec<Value> {
+    match usual {
+        Usual::Nothing => Vec::new(),
+        Usual::Direction(direction) => vec![Value::Direction(direction)],
+        Usual::Number(number) => vec![match quantity {
+            Quantity::Spectrum(_) => Value::Spectrum(Spectrum::Constant(number)),
+            _ => Value::Number(number),
+        }],
+    }
 }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::fields::{Complaint, Fields, Report};
+use super::fields::{Fields, Report};
 use super::file;
 use super::tree::{Node, Table, Value};
 use crate::declare::Role;
@@ -56,7 +56,7 @@ impl<'a> Spectra<'a> {
         for entry in &table.entries {
             if Spectrum::named(&entry.key).is_some() {
                 let message = format!("\"{}\" is the name of a standard spectrum", entry.key);
-                report.add(Complaint::new(entry.key_place, message).expected("a name of your own"));
+                report.fail::<()>(entry.key_place, message, "a name of your own");
                 continue;
             }
             let draft = spectra.draft(&format!("spectra.{}", entry.key), &entry.node);
@@ -77,10 +77,9 @@ impl<'a> Spectra<'a> {
                 self.fitted(what, node, Spectrum::rgb_emission(rgb))?
             }
             (Draft::Rgb(_), Role::Index | Role::Extinction) => {
-                let complaint = Complaint::new(node.place, format!("{what} is a colour"));
-                return self
-                    .report
-                    .fail(complaint.expected("a number, \"table\" or \"csv\""));
+                let message = format!("{what} is a colour");
+                let expected = "a number, \"table\" or \"csv\"";
+                return self.report.fail(node.place, message, expected);
             }
         };
         self.check(what, node, &spectrum, role)?;
@@ -94,8 +93,7 @@ impl<'a> Spectra<'a> {
             Err(RgbError::Emission(c)) => (c, "finite components of at least 0"),
         };
         let message = format!("{what} has the colour component {component}");
-        self.report
-            .fail(Complaint::new(node.place, message).expected(expected))
+        self.report.fail(node.place, message, expected)
     }
 
     fn check(&self, what: &str, node: &Node, spectrum: &Spectrum, role: Role) -> Option<()> {
@@ -106,8 +104,7 @@ impl<'a> Spectra<'a> {
             } else {
                 format!("{what} has the value {value}")
             };
-            self.report
-                .fail(Complaint::new(node.place, message).expected(expected))
+            self.report.fail(node.place, message, expected)
         };
         match role {
             Role::Reflectance if low < 0.0 => fail(low, "a reflectance between 0 and 1"),
@@ -184,8 +181,7 @@ impl<'a> Spectra<'a> {
             return Some(draft);
         }
         let message = format!("{what} overflows when multiplied by {factor}");
-        self.report
-            .fail(Complaint::new(node.place, message).expected("finite values"))
+        self.report.fail(node.place, message, "finite values")
     }
 
     fn table(&self, what: &str, node: &Node) -> Option<spectrum::Table> {
@@ -195,9 +191,7 @@ impl<'a> Spectra<'a> {
                 0 => format!("{what} is empty"),
                 _ => format!("{what} has only one sample"),
             };
-            return self
-                .report
-                .fail(Complaint::new(node.place, message).expected(SAMPLES));
+            return self.report.fail(node.place, message, SAMPLES);
         }
         let mut nm = Vec::with_capacity(rows.len());
         let mut values = Vec::with_capacity(rows.len());
@@ -205,9 +199,7 @@ impl<'a> Spectra<'a> {
             let [wavelength, value] = self.report.numbers(&format!("{what}[{i}]"), row)?;
             if let Err((message, expected)) = check_wavelength(nm.last(), wavelength) {
                 let message = format!("{what}[{i}]: {message}");
-                return self
-                    .report
-                    .fail(Complaint::new(row.place, message).expected(expected));
+                return self.report.fail(row.place, message, expected);
             }
             nm.push(wavelength);
             values.push(value);
@@ -219,8 +211,7 @@ impl<'a> Spectra<'a> {
         let name = self.report.text(what, node)?;
         let fail = |message: String, expected: &str| {
             let message = format!("{what}: {message}");
-            self.report
-                .fail(Complaint::new(node.place, message).expected(expected))
+            self.report.fail(node.place, message, expected)
         };
         let bytes = match file::read_bytes(&self.base_dir.join(name)) {
             Ok(bytes) => bytes,

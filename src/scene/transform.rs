@@ -1,13 +1,13 @@
 //! Reading transforms, with entries as exact as they can be.
 
 use glam::DVec3;
-use num_bigint::BigInt;
-use num_traits::Zero;
 
-use super::fields::{Complaint, Fields, Report};
+use super::fields::{Fields, Report, every};
 use super::names::one_of;
 use super::tree::{Node, Place, Value};
 use crate::math::affine::Affine;
+use crate::math::exact::Exact;
+use crate::math::number::Number;
 
 const STEPS: &[&str] = &[
     "translate",
@@ -24,28 +24,21 @@ const STEPS: &[&str] = &[
 pub(super) fn read(report: &Report, what: &str, node: &Node) -> Option<Affine> {
     let expected = "an array of transforms, such as [{ rotate_y = 30 }, { scale = 2 }]";
     let nodes = report.list(what, node, expected)?;
-    let steps: Vec<Option<Affine>> = nodes
-        .iter()
-        .enumerate()
-        .map(|(i, node)| step(report, &format!("{what}[{i}]"), node))
-        .collect();
-    let steps: Option<Vec<Affine>> = steps.into_iter().collect();
-    let composed = steps?
-        .into_iter()
-        .reduce(|first, then| then.after(&first))
-        .unwrap_or(Affine::IDENTITY);
-    Some(composed)
+    let steps = nodes.iter().enumerate();
+    let steps = every(steps.map(|(i, node)| step(report, &format!("{what}[{i}]"), node)))?;
+    let composed = steps.into_iter().reduce(|first, then| then.after(&first));
+    Some(composed.unwrap_or(Affine::IDENTITY))
 }
 
 /// A matrix that maps space onto a plane, or whose entries are not numbers, places nothing.
 pub(super) fn check(report: &Report, place: Place, affine: &Affine) -> Option<()> {
     if !affine.rows.as_flattened().iter().all(|x| x.is_finite()) {
-        let complaint = Complaint::new(place, "the object's matrix has entries that are infinite");
-        return report.fail(complaint.expected("sizes and transforms that stay finite"));
+        let message = "the object's matrix has entries that are infinite";
+        return report.fail(place, message, "sizes and transforms that stay finite");
     }
     if is_singular(affine) {
-        let complaint = Complaint::new(place, "the object's matrix is singular");
-        return report.fail(complaint.expected("an invertible transform"));
+        let message = "the object's matrix is singular";
+        return report.fail(place, message, "an invertible transform");
     }
     Some(())
 }
@@ -56,15 +49,9 @@ fn step(report: &Report, what: &str, node: &Node) -> Option<Affine> {
     let path = fields.path(kind);
     match kind {
         "translate" => report.vector(&path, inner).map(Affine::translate),
-        "rotate_x" => report
-            .number(&path, inner)
-            .map(|angle| rotation(DVec3::X, angle)),
-        "rotate_y" => report
-            .number(&path, inner)
-            .map(|angle| rotation(DVec3::Y, angle)),
-        "rotate_z" => report
-            .number(&path, inner)
-            .map(|angle| rotation(DVec3::Z, angle)),
+        "rotate_x" => Some(rotation(DVec3::X, report.number(&path, inner)?)),
+        "rotate_y" => Some(rotation(DVec3::Y, report.number(&path, inner)?)),
+        "rotate_z" => Some(rotation(DVec3::Z, report.number(&path, inner)?)),
         "rotate" => rotate(report, &path, inner),
         "scale" => scale(report, &path, inner),
         "shear" => shear(report, &path, inner),
@@ -125,7 +112,7 @@ fn matrix(report: &Report, what: &str, node: &Node) -> Option<Affine> {
     let nodes = report.list(what, node, expected)?;
     if !(3..=4).contains(&nodes.len()) {
         let message = format!("{what} has {} rows", nodes.len());
-        return report.fail(Complaint::new(node.place, message).expected(expected));
+        return report.fail(node.place, message, expected);
     }
     let mut rows = [[0.0; 4]; 4];
     for (i, (row, node)) in rows.iter_mut().zip(nodes).enumerate() {
@@ -135,7 +122,7 @@ fn matrix(report: &Report, what: &str, node: &Node) -> Option<Affine> {
         && rows[3] != [0.0, 0.0, 0.0, 1.0]
     {
         let message = format!("the last row of {what} is not [0, 0, 0, 1]");
-        return report.fail(Complaint::new(last.place, message).expected("an affine matrix"));
+        return report.fail(last.place, message, "an affine matrix");
     }
     Some(Affine {
         rows: [rows[0], rows[1], rows[2]],
@@ -185,48 +172,20 @@ fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     }
 }
 
-/// Whether the determinant of the linear part is exactly zero, decided in integers. Scaling a row
-/// by a power of two does not change the answer, so each row is brought to integers on its own.
+/// Whether the determinant of the linear part is exactly zero.
 pub(super) fn is_singular(affine: &Affine) -> bool {
-    let rows: [[BigInt; 3]; 3] = affine.rows.map(|[x, y, z, _]| integers([x, y, z]));
-    let minor = |i: usize, j: usize| &rows[1][i] * &rows[2][j] - &rows[1][j] * &rows[2][i];
-    let determinant: BigInt =
-        &rows[0][0] * minor(1, 2) - &rows[0][1] * minor(0, 2) + &rows[0][2] * minor(0, 1);
-    determinant.is_zero()
-}
-
-/// Finite f64 as integers after multiplication by a common power of two.
-fn integers(values: [f64; 3]) -> [BigInt; 3] {
-    let parts = values.map(decode);
-    let lowest = parts
-        .iter()
-        .filter(|(mantissa, _)| *mantissa != 0)
-        .map(|(_, exponent)| *exponent)
-        .min()
-        .unwrap_or(0);
-    parts.map(|(mantissa, exponent)| {
-        // Zeros may have a lower exponent; for the others the shift is not negative.
-        BigInt::from(mantissa) << exponent.saturating_sub(lowest).max(0)
-    })
-}
-
-/// A finite f64 as mantissa × 2^exponent (IEEE 754-2019, section 3.4).
-fn decode(value: f64) -> (i64, i32) {
-    const FRACTION: u32 = f64::MANTISSA_DIGITS - 1;
-    let bits = value.to_bits();
-    let fraction = (bits & ((1 << FRACTION) - 1)).cast_signed();
-    let biased = ((bits >> FRACTION) & 0x7ff) as i32;
-    let (magnitude, exponent) = if biased == 0 {
-        (fraction, -1074)
-    } else {
-        (fraction | (1 << FRACTION), biased - 1075)
+    let rows = affine
+        .rows
+        .map(|[x, y, z, _]| [x, y, z].map(|entry| Exact::scaled(entry, 0)));
+    let minor = |i: usize, j: usize| {
+        let product = |a: usize, b: usize| rows[1][a].times(&rows[2][b]);
+        product(i, j).minus(&product(j, i))
     };
-    (
-        if value.is_sign_negative() {
-            -magnitude
-        } else {
-            magnitude
-        },
-        exponent,
-    )
+    let terms = [(0, minor(1, 2)), (1, minor(2, 0)), (2, minor(0, 1))];
+    let terms = terms.map(|(column, minor)| rows[0][column].times(&minor));
+    terms[0]
+        .plus(&terms[1])
+        .plus(&terms[2])
+        .magnitude()
+        .is_none()
 }

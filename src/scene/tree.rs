@@ -3,6 +3,8 @@
 //! Panels and settings lay parts of other origins over the file's own, so a place is a pair of
 //! origin and byte range.
 
+use std::ops::Range;
+
 use toml_edit::{Document, Item, TableLike, TomlError};
 
 use super::error::{Diagnostic, Origin};
@@ -16,6 +18,16 @@ pub(super) struct Place {
     pub start: usize,
     /// One past the last byte.
     pub end: usize,
+}
+
+impl Place {
+    pub fn new(origin: usize, bytes: Range<usize>) -> Self {
+        Self {
+            origin,
+            start: bytes.start,
+            end: bytes.end,
+        }
+    }
 }
 
 /// The texts that places refer to, with the names they go by in messages.
@@ -109,12 +121,7 @@ pub(super) fn parse(text: &str, origin: usize, shift: usize) -> Result<Table, To
         origin,
         shift,
     };
-    let root = Place {
-        origin,
-        start: 0,
-        end: 0,
-    };
-    Ok(reader.table(document.as_table(), root))
+    Ok(reader.table(document.as_table(), Place::new(origin, 0..0)))
 }
 
 struct Reader<'a> {
@@ -124,11 +131,10 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn place(&self, span: Option<std::ops::Range<usize>>, otherwise: Place) -> Place {
-        span.map_or(otherwise, |span| Place {
-            origin: self.origin,
-            start: span.start.saturating_sub(self.shift),
-            end: span.end.saturating_sub(self.shift),
+    fn place(&self, span: Option<Range<usize>>, otherwise: Place) -> Place {
+        span.map_or(otherwise, |span| {
+            let [start, end] = [span.start, span.end].map(|byte| byte.saturating_sub(self.shift));
+            Place::new(self.origin, start..end)
         })
     }
 
@@ -154,15 +160,13 @@ impl Reader<'_> {
             Item::None => return None,
             Item::Value(value) => return Some(self.value(value, key_place)),
             Item::Table(table) => Value::Table(self.table(table, place)),
-            Item::ArrayOfTables(tables) => Value::List(
-                tables
-                    .iter()
-                    .map(|table| {
-                        let place = self.place(table.span(), place);
-                        Node::new(place, Value::Table(self.table(table, place)))
-                    })
-                    .collect(),
-            ),
+            Item::ArrayOfTables(tables) => {
+                let node = |table: &toml_edit::Table| {
+                    let place = self.place(table.span(), place);
+                    Node::new(place, Value::Table(self.table(table, place)))
+                };
+                Value::List(tables.iter().map(node).collect())
+            }
         };
         Some(Node::new(place, value))
     }

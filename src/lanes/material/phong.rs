@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_1_PI, TAU};
 
 use super::interface::unit_again;
 use super::{Densities, Event, Interface, Lanes, Material, Transport, Variates, Vec3, diffuse};
-use crate::declare::{Declaration, Parameter, Quantity, Range, Role};
+use crate::declare::{Declaration, Parameter, Quantity, Range, Role, Usual};
 use crate::math::functions::sin_cos_turns;
 use crate::math::lanes::{Mask, Real, Scalar};
 use crate::math::packet::{array, each};
@@ -122,7 +122,7 @@ const fn number(key: &'static str, what: &'static str, most: f64, default: f64) 
             unit: "",
             range: Range::between(0.0, most),
         },
-        default: Some(default),
+        default: Some(Usual::Number(default)),
     }
 }
 

@@ -14,7 +14,7 @@ use glam::DVec3;
 
 use crate::camera::pixel_size;
 use crate::math::affine::Affine;
-use crate::scene::{Object, Projection, Scene, Shape};
+use crate::scene::{Object, Scene, Shape};
 use crate::shape::hierarchy::Bounds;
 use crate::shape::{Placed, ShapeKind};
 use positions::Error;
@@ -47,7 +47,7 @@ impl Blur {
         let sites = sites(scene);
         let start = start(scene);
         let reach = sites.iter().map(Site::reach).fold(start, f64::max);
-        let central = matches!(scene.camera.projection, Projection::Perspective { .. });
+        let central = scene.camera.projection.kind.is_central();
         let pixel = pixel_size(&scene.camera.projection, scene.image.size[1]);
         let mut blur = Self {
             position: 0.0,
@@ -128,13 +128,12 @@ pub fn sites(scene: &Scene) -> Vec<Site> {
 /// How far from the camera's position its rays begin.
 fn start(scene: &Scene) -> f64 {
     let lens = scene.camera.lens.map_or(0.0, |lens| lens.radius);
-    match scene.camera.projection {
-        Projection::Perspective { .. } => lens,
-        Projection::Orthographic { height } => {
-            let [x, y] = scene.image.size.map(f64::from);
-            lens + height / 2.0 * (x / y).hypot(1.0)
-        }
+    let projection = scene.camera.projection;
+    if projection.kind.is_central() {
+        return lens;
     }
+    let [x, y] = scene.image.size.map(f64::from);
+    lens + projection.height() / 2.0 * (x / y).hypot(1.0)
 }
 
 /// The object's map with the camera at the origin.

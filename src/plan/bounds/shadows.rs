@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::{Site, pixels};
-use crate::scene::{Light, Projection, Scene};
+use crate::scene::{Place, Scene};
 use crate::shape::hierarchy::Bounds;
 
 /// Roundings of the direction of parallel light: one of each component.
@@ -20,7 +20,7 @@ const POINT: f64 = 4.0;
 /// The largest shift of a shadow's edge in arithmetic of unit roundoff `roundoff`, on what is within
 /// `reach`: as an angle from the camera in central projection, else in scene units.
 pub fn shift(scene: &Scene, sites: &[Site], roundoff: f64, reach: f64) -> f64 {
-    let central = matches!(scene.camera.projection, Projection::Perspective { .. });
+    let central = scene.camera.projection.kind.is_central();
     let receives = |site: &&Site| {
         let object = &scene.objects[site.index].value;
         let material = &scene.materials[object.material].value;
@@ -33,15 +33,14 @@ pub fn shift(scene: &Scene, sites: &[Site], roundoff: f64, reach: f64) -> f64 {
     });
     let receivers: Vec<_> = receivers.collect();
     let casters: Vec<&Site> = sites.iter().filter(|site| site.bounds.is_some()).collect();
-    let of_light = |light: &Light| match light {
-        Light::Directional { .. } => {
+    let of_light = |place: Place| match place {
+        Place::Towards(_) => {
             let far = Greatest::of(&casters, farthest);
             worst(&receivers, &far, central, |far, d| {
                 PARALLEL * roundoff * (far + d)
             })
         }
-        Light::Point { at, .. } => {
-            let at = *at - scene.camera.from;
+        Place::At(at) => {
             let close = Greatest::of(&casters, |site| 1.0 / pixels::nearest(site, at));
             // A ray that is aside by the angle e passes the light, at most L away, by eL; beyond an
             // object that is at least g from the light, the shadow is aside by no more than eL · L/g.
@@ -50,7 +49,9 @@ pub fn shift(scene: &Scene, sites: &[Site], roundoff: f64, reach: f64) -> f64 {
             })
         }
     };
-    scene.lights.iter().map(of_light).fold(0.0, f64::max)
+    let places = scene.lights.iter();
+    let places = places.filter_map(|light| light.place(scene.camera.from));
+    places.map(of_light).fold(0.0, f64::max)
 }
 
 /// The worst shift over all receivers, where `shift` is that of a caster's number at a distance from the
