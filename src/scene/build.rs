@@ -4,9 +4,8 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::fields::{Fields, Report, every};
+use super::fields::{Fields, Report, every, one_of};
 use super::implicit::DefaultFinder;
-use super::names::one_of;
 use super::spectra::{self, Spectra};
 use super::tree::{Node, Place, Table};
 use super::{

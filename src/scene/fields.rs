@@ -9,7 +9,6 @@ use std::ops::RangeInclusive;
 use glam::DVec3;
 
 use super::FinderChoice;
-use super::names::{nearest, one_of};
 use super::tree::{Node, Place, Table, Value};
 
 /// Something wrong at a place.
@@ -390,5 +389,43 @@ impl<'a> Fields<'a> {
                 self.report.fail(entry.key_place, message, expected)
             }
         }
+    }
+}
+
+/// As many names as a message lists.
+const LISTED: usize = 12;
+
+/// The nearest of `names`, if it is close enough to be a slip of the pen: one edit in three
+/// letters, at least one, whatever the case.
+pub(super) fn nearest(name: &str, names: &[&str]) -> Option<String> {
+    let lower = name.to_lowercase();
+    let allowed = (lower.chars().count() / 3).max(1);
+    names
+        .iter()
+        .map(|candidate| {
+            let distance = strsim::osa_distance(&lower, &candidate.to_lowercase());
+            (distance, *candidate)
+        })
+        .filter(|(distance, _)| *distance <= allowed)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate.to_owned())
+}
+
+/// `one of "a", "b"`, shortened when there are many.
+pub(super) fn one_of(names: &[&str]) -> String {
+    if names.is_empty() {
+        return "a name (but none is defined)".to_owned();
+    }
+    let listed: Vec<String> = names
+        .iter()
+        .take(LISTED)
+        .map(|n| format!("\"{n}\""))
+        .collect();
+    let rest = names.len() - listed.len();
+    let listed = listed.join(", ");
+    match (names.len(), rest) {
+        (1, _) => listed,
+        (_, 0) => format!("one of {listed}"),
+        _ => format!("one of {listed} … and {rest} more"),
     }
 }

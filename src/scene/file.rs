@@ -224,14 +224,11 @@ const TABLES: &[&str] = &["camera", "materials", "environment", "truth"];
 
 /// Takes the panels out of the document.
 fn panels(report: &Report, root: &mut Table) -> Vec<Panel> {
-    let Some(index) = root.entries.iter().position(|e| e.key == "panel") else {
+    let Some(node) = root.remove("panel") else {
         return Vec::new();
     };
-    let node = root.entries.remove(index).node;
-    let expected = "[[panel]] tables";
-    let Some(nodes) = report.list("panel", &node, expected) else {
-        return Vec::new();
-    };
+    let nodes = report.list("panel", &node, "[[panel]] tables");
+    let nodes = nodes.unwrap_or_default();
     let mut panels: Vec<Panel> = Vec::with_capacity(nodes.len());
     for node in nodes {
         let Some(panel) = panel(report, node) else {
@@ -247,9 +244,7 @@ fn panels(report: &Report, root: &mut Table) -> Vec<Panel> {
 }
 
 fn panel(report: &Report, node: &Node) -> Option<Panel> {
-    let mut keys = vec!["name"];
-    keys.extend(build::IMAGE_KEYS);
-    keys.extend(TABLES);
+    let keys = [&["name"], build::IMAGE_KEYS, TABLES].concat();
     let fields = Fields::open(report, "panel", node, &keys)?;
     let name = fields.required("name", "name = \"…\"", |what, node| {
         report.text(what, node).map(|name| (name, node.place))
@@ -257,18 +252,16 @@ fn panel(report: &Report, node: &Node) -> Option<Panel> {
     let mut over = Table::default();
     let mut image = Table::default();
     for entry in &fields.table.entries {
-        if TABLES.contains(&entry.key.as_str()) {
-            over.entries.push(entry.clone());
-        } else if build::IMAGE_KEYS.contains(&entry.key.as_str()) {
-            image.entries.push(entry.clone());
+        let key = entry.key.as_str();
+        if TABLES.contains(&key) {
+            over.put(entry.clone());
+        } else if build::IMAGE_KEYS.contains(&key) {
+            image.put(entry.clone());
         }
     }
     if !image.entries.is_empty() {
-        over.entries.push(Entry {
-            key: "image".to_owned(),
-            key_place: node.place,
-            node: Node::new(node.place, Value::Table(image)),
-        });
+        let image = Node::new(node.place, Value::Table(image));
+        over.put(Entry::new("image", node.place, image));
     }
     name.map(|(name, name_place)| Panel {
         name: name.to_owned(),
@@ -305,9 +298,8 @@ fn check_others(
         let mut table = root.clone();
         if let Some(panel) = variant {
             // Shapes and lights are the same in every panel and have been checked.
-            table
-                .entries
-                .retain(|e| e.key != "object" && e.key != "light");
+            table.remove("object");
+            table.remove("light");
             overlay::merge(&mut table, &panel.over);
         }
         build::scene(&findings, base_dir, &table);

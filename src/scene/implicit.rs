@@ -26,7 +26,7 @@ const MOST_STEPS: u32 = 1_000_000;
 /// As many characters of an expression as a message shows.
 const SHOWN: usize = 40;
 
-const KEYS: [&str; 5] = ["inside", "parameters", "closed", "finder", "steps"];
+pub(super) const KEYS: [&str; 5] = ["inside", "parameters", "closed", "finder", "steps"];
 const BOX: &str = "[[x, y, z], [x, y, z]], the lower and the upper corner of a box";
 
 /// Reads `{ implicit = … }`.

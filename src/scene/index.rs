@@ -1,15 +1,16 @@
 //! Reading refractive indices.
 
-use super::fields::{Fields, every};
-use super::names::{GLASSES, METALS};
+use super::fields::{Fields, every, one_of};
 use super::spectra::Spectra;
 use super::tree::{Node, Value};
 use crate::declare::Role;
-use crate::spectrum::ior::{RefractiveIndex, named_glass, named_metal};
+use crate::spectrum::ior::{RefractiveIndex, glass_names, metal_names, named_glass, named_metal};
 use crate::spectrum::{NM_MAX, NM_MIN};
 
 /// Keys of a metal's table.
 pub(super) const METAL_KEYS: [&str; 2] = ["n", "k"];
+/// Keys of a glass's table: it has one of them.
+pub(super) const GLASS_KEYS: &[&str] = &["ior", "cauchy", "sellmeier"];
 /// What a metal may be.
 pub(super) const METAL: [&str; 2] = ["the name of a metal", "{ n = spectrum, k = spectrum }"];
 
@@ -22,7 +23,8 @@ pub(super) fn metal(
 ) -> Option<RefractiveIndex> {
     named_metal(name).or_else(|| {
         let message = format!("{path} names the unknown metal \"{name}\"");
-        spectra.report.unknown(node.place, message, name, &METALS)
+        let names: Vec<&str> = metal_names().collect();
+        spectra.report.unknown(node.place, message, name, &names)
     })
 }
 
@@ -45,13 +47,17 @@ pub(super) fn glass(spectra: &Spectra<'_>, path: &str, node: &Node) -> Option<Re
             Some(index) => Some(index),
             None => {
                 let message = format!("{path} names the unknown glass \"{name}\"");
-                report.unknown(node.place, message, name, &GLASSES)
+                report.unknown(
+                    node.place,
+                    message,
+                    name,
+                    &glass_names().collect::<Vec<_>>(),
+                )
             }
         },
         Value::Table(_) => {
-            let kinds = &["ior", "cauchy", "sellmeier"];
-            let fields = Fields::open(report, path, node, kinds)?;
-            let (kind, inner) = fields.exactly_one(kinds)?;
+            let fields = Fields::open(report, path, node, GLASS_KEYS)?;
+            let (kind, inner) = fields.exactly_one(GLASS_KEYS)?;
             let path = fields.path(kind);
             let index = match kind {
                 "ior" => RefractiveIndex::Constant(report.number(&path, inner)?),
@@ -62,8 +68,8 @@ pub(super) fn glass(spectra: &Spectra<'_>, path: &str, node: &Node) -> Option<Re
             Some(index)
         }
         _ => {
-            let kinds = "the name of a glass, or a table with one of ";
-            let expected = format!("{kinds}\"ior\", \"cauchy\", \"sellmeier\"");
+            let keys = one_of(GLASS_KEYS);
+            let expected = format!("the name of a glass, or a table with {keys}");
             report.wrong_type(path, node, &expected)
         }
     }

@@ -2,8 +2,7 @@
 
 use std::sync::LazyLock;
 
-use super::fields::{Fields, every};
-use super::names::one_of;
+use super::fields::{Fields, every, one_of};
 use super::quantities;
 use super::spectra::Spectra;
 use super::tree::{Node, Value};

@@ -11,7 +11,6 @@ mod file;
 mod implicit;
 mod index;
 mod materials;
-mod names;
 mod objects;
 mod overlay;
 mod quantities;

@@ -4,9 +4,8 @@ use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
-use super::fields::{Fields, Report, every};
+use super::fields::{Fields, Report, every, one_of};
 use super::implicit::{self, DefaultFinder};
-use super::names::one_of;
 use super::transform;
 use super::tree::{Node, Value};
 use super::{Named, Object, Shape};

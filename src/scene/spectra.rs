@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::fields::{Fields, Report};
+use super::fields::{Fields, Report, one_of};
 use super::file;
 use super::tree::{Node, Table, Value};
 use crate::declare::Role;
@@ -25,19 +25,16 @@ pub(super) struct Spectra<'a> {
     names: Vec<String>,
 }
 
-const KINDS: &[&str] = &["table", "csv", "blackbody", "rgb", "name", "constant"];
-const KEYS: &[&str] = &[
-    "table",
-    "csv",
-    "blackbody",
-    "rgb",
-    "name",
-    "constant",
-    "scale",
-];
-const EXPECTED: &str = "a spectrum: a number, a name, or a table with one of \"table\", \"csv\", \
-                        \"blackbody\", \"rgb\", \"name\", \"constant\"";
+/// Keys of a spectrum's table: it has one of them.
+pub(super) const KINDS: &[&str] = &["table", "csv", "blackbody", "rgb", "name", "constant"];
 const SAMPLES: &str = "at least two samples [nm, value]";
+
+fn expected() -> String {
+    format!(
+        "a spectrum: a number, a name, or a table with {}",
+        one_of(KINDS)
+    )
+}
 
 impl<'a> Spectra<'a> {
     /// Reads `[spectra]`; a definition may use names defined above it.
@@ -127,7 +124,7 @@ impl<'a> Spectra<'a> {
             }
             Value::Text(name) => self.by_name(what, node, name, 1.0),
             Value::Table(_) => self.described(what, node),
-            _ => self.report.wrong_type(what, node, EXPECTED),
+            _ => self.report.wrong_type(what, node, &expected()),
         }
     }
 
@@ -144,7 +141,7 @@ impl<'a> Spectra<'a> {
     }
 
     fn described(&self, what: &str, node: &Node) -> Option<Draft> {
-        let fields = Fields::open(self.report, what, node, KEYS)?;
+        let fields = Fields::open(self.report, what, node, &[KINDS, &["scale"]].concat())?;
         let scale = fields.optional("scale", 1.0, |what, node| self.report.number(what, node));
         let (kind, inner) = fields.exactly_one(KINDS)?;
         let path = fields.path(kind);
@@ -266,7 +263,7 @@ pub(super) fn environment(spectra: &Spectra<'_>, root: &Table) -> Option<Option<
     match &node.value {
         Value::Table(table) if table.get("radiance").is_some() || table.entries.is_empty() => {
             let fields = Fields::open(spectra.report, "environment", node, &["radiance"])?;
-            fields.required("radiance", EXPECTED, read).map(Some)
+            fields.required("radiance", &expected(), read).map(Some)
         }
         _ => read("environment", node).map(Some),
     }

@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 
-use super::fields::{Fields, Report, every};
-use super::names::one_of;
+use super::fields::{Fields, Report, every, one_of};
 use super::tree::{Node, Place, Value};
 use crate::math::affine::Affine;
 use crate::math::exact::Exact;

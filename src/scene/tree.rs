@@ -30,9 +30,8 @@ impl Place {
     }
 }
 
-/// The texts that places refer to, with the names they go by in messages.
+/// The texts that places refer to.
 pub(super) struct Origins {
-    /// Name and text of each.
     pub texts: Vec<(Origin, String)>,
 }
 
@@ -88,6 +87,13 @@ impl Node {
         }
     }
 
+    pub fn table_mut(&mut self) -> Option<&mut Table> {
+        match &mut self.value {
+            Value::Table(table) => Some(table),
+            _ => None,
+        }
+    }
+
     /// What the value is, for messages.
     pub fn kind(&self) -> &'static str {
         match &self.value {
@@ -102,6 +108,16 @@ impl Node {
     }
 }
 
+impl Entry {
+    pub fn new(key: &str, key_place: Place, node: Node) -> Self {
+        Self {
+            key: key.to_owned(),
+            key_place,
+            node,
+        }
+    }
+}
+
 impl Table {
     pub fn get(&self, key: &str) -> Option<&Node> {
         self.entry(key).map(|entry| &entry.node)
@@ -109,6 +125,24 @@ impl Table {
 
     pub fn entry(&self, key: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.key == key)
+    }
+
+    pub fn get_mut(&mut self, key: &str) -> Option<&mut Node> {
+        let mut entries = self.entries.iter_mut();
+        entries.find(|e| e.key == key).map(|entry| &mut entry.node)
+    }
+
+    /// Adds an entry, or replaces the one of its key.
+    pub fn put(&mut self, entry: Entry) {
+        match self.entries.iter_mut().find(|e| e.key == entry.key) {
+            Some(existing) => *existing = entry,
+            None => self.entries.push(entry),
+        }
+    }
+
+    pub fn remove(&mut self, key: &str) -> Option<Node> {
+        let index = self.entries.iter().position(|e| e.key == key)?;
+        Some(self.entries.remove(index).node)
     }
 }
 
@@ -143,13 +177,8 @@ impl Reader<'_> {
         for (name, item) in table.iter() {
             let key_span = table.key(name).and_then(toml_edit::Key::span);
             let key_place = self.place(key_span, place);
-            if let Some(node) = self.item(item, key_place) {
-                entries.push(Entry {
-                    key: name.to_owned(),
-                    key_place,
-                    node,
-                });
-            }
+            let node = self.item(item, key_place);
+            entries.extend(node.map(|node| Entry::new(name, key_place, node)));
         }
         Table { entries }
     }
