@@ -102,12 +102,16 @@ pub enum Quantity {
 }
 
 impl Quantity {
+    pub const fn number(unit: &'static str, range: Range) -> Self {
+        Self::Number { unit, range }
+    }
+
     /// As how many spectra the loop reads it.
     pub const fn spectra(self) -> usize {
         match self {
-            Self::True | Self::Number { .. } | Self::Point | Self::Direction | Self::Table(_) => 0,
             Self::Spectrum(_) => 1,
             Self::TwoSpectra(_) | Self::Metal | Self::Glass => 2,
+            _ => 0,
         }
     }
 }
@@ -133,6 +137,26 @@ pub struct Parameter {
     pub default: Option<Usual>,
 }
 
+impl Parameter {
+    /// One that must be there.
+    pub const fn new(key: &'static str, what: &'static str, quantity: Quantity) -> Self {
+        Self {
+            key,
+            what,
+            quantity,
+            default: None,
+        }
+    }
+
+    /// One that may be left out.
+    pub const fn usually(self, usual: Usual) -> Self {
+        Self {
+            default: Some(usual),
+            ..self
+        }
+    }
+}
+
 /// A kind of thing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Declaration {
@@ -149,15 +173,15 @@ impl Declaration {
     /// A kind whose key says everything.
     pub const fn new(key: &'static str, what: &'static str, quantity: Quantity) -> Self {
         Self {
-            main: Parameter {
-                key,
-                what,
-                quantity,
-                default: None,
-            },
+            main: Parameter::new(key, what, quantity),
             within: None,
             beside: &[],
         }
+    }
+
+    /// The kind with these parameters beside the main one.
+    pub const fn beside(self, beside: &'static [Parameter]) -> Self {
+        Self { beside, ..self }
     }
 
     /// As how many spectra the loop reads its parameters.

@@ -45,51 +45,29 @@ pub struct Lens {
 impl Camera {
     /// Where it stands and looks.
     pub const VIEW: [Parameter; 3] = [
-        Parameter {
-            key: "from",
-            what: "position of the lens centre",
-            quantity: Quantity::Point,
-            default: None,
-        },
-        Parameter {
-            key: "to",
-            what: "a point straight ahead",
-            quantity: Quantity::Point,
-            default: None,
-        },
-        Parameter {
-            key: "up",
-            what: "the direction that is up in the picture",
-            quantity: Quantity::Direction,
-            default: Some(Usual::Direction(DVec3::Y)),
-        },
+        Parameter::new("from", "position of the lens centre", Quantity::Point),
+        Parameter::new("to", "a point straight ahead", Quantity::Point),
+        Parameter::new("up", "what is up in the picture", Quantity::Direction)
+            .usually(Usual::Direction(DVec3::Y)),
     ];
     /// Its lens.
-    pub const LENS: Parameter = Parameter {
-        key: "lens",
-        what: "a thin lens",
-        quantity: Quantity::Table(&[
-            Parameter {
-                key: "radius",
-                what: "radius of the aperture",
-                quantity: Quantity::Number {
-                    unit: "scene units",
-                    range: Range::NOT_NEGATIVE,
-                },
-                default: None,
-            },
-            Parameter {
-                key: "focus",
-                what: "distance of the plane of focus",
-                quantity: Quantity::Number {
-                    unit: "scene units",
-                    range: Range::POSITIVE,
-                },
-                default: None,
-            },
+    pub const LENS: Parameter = Parameter::new(
+        "lens",
+        "a thin lens",
+        Quantity::Table(&[
+            Parameter::new(
+                "radius",
+                "radius of the aperture",
+                Quantity::number("scene units", Range::NOT_NEGATIVE),
+            ),
+            Parameter::new(
+                "focus",
+                "distance of the plane of focus",
+                Quantity::number("scene units", Range::POSITIVE),
+            ),
         ]),
-        default: Some(Usual::Nothing),
-    };
+    )
+    .usually(Usual::Nothing);
 
     /// From the values of [`Self::VIEW`] and [`Self::LENS`]; a lens of radius 0 is a pinhole.
     pub fn new(values: &[Value], projection: Projection) -> Option<Self> {

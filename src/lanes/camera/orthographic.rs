@@ -9,15 +9,11 @@ use crate::declare::{Parameter, Quantity, Range};
 pub struct Orthographic;
 
 impl Project for Orthographic {
-    const PARAMETER: Parameter = Parameter {
-        key: "orthographic",
-        what: "height of the picture",
-        quantity: Quantity::Number {
-            unit: "scene units",
-            range: Range::POSITIVE,
-        },
-        default: None,
-    };
+    const PARAMETER: Parameter = Parameter::new(
+        "orthographic",
+        "height of the picture",
+        Quantity::number("scene units", Range::POSITIVE),
+    );
     const CENTRAL: bool = false;
 
     fn height(height: f64) -> f64 {

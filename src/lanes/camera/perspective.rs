@@ -9,18 +9,17 @@ use crate::declare::{Parameter, Quantity, Range};
 pub struct Perspective;
 
 impl Project for Perspective {
-    const PARAMETER: Parameter = Parameter {
-        key: "fov",
-        what: "full vertical opening angle",
-        quantity: Quantity::Number {
-            unit: "degrees",
-            range: Range {
+    const PARAMETER: Parameter = Parameter::new(
+        "fov",
+        "full vertical opening angle",
+        Quantity::number(
+            "degrees",
+            Range {
                 low: Bound::Excluded(0.0),
                 high: Bound::Excluded(180.0),
             },
-        },
-        default: None,
-    };
+        ),
+    );
     const CENTRAL: bool = true;
 
     fn height(fov: f64) -> f64 {

@@ -230,13 +230,8 @@ impl<T: Scalar> Light<T> for CylinderLight<T> {
     }
 
     #[inline(never)]
-    fn sample<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        p: Vec3<L::Real>,
-        numbers: [L::Real; 2],
-    ) -> Towards<L> {
-        self.sample_part(l, p, numbers).0
+    fn sample<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>, u: [L::Real; 2]) -> Towards<L> {
+        self.sample_part(l, p, u).0
     }
 
     #[inline(never)]

@@ -14,26 +14,20 @@ use crate::math::vec3::Vec3;
 pub struct DirectionalLight<T>(pub [T; 3]);
 
 impl<T: Scalar> WithoutSurface<T> for DirectionalLight<T> {
-    const DECLARATION: Declaration = Declaration {
-        beside: &[Parameter {
-            key: "irradiance",
-            what: "spectrum, W·m⁻²·nm⁻¹ on a surface that faces the light",
-            quantity: Quantity::Spectrum(Role::Emission),
-            default: None,
-        }],
-        ..Declaration::new(
-            "direction",
-            "direction in which the light travels",
-            Quantity::Direction,
-        )
-    };
+    const DECLARATION: Declaration = Declaration::new(
+        "direction",
+        "direction in which the light travels",
+        Quantity::Direction,
+    )
+    .beside(&[Parameter::new(
+        "irradiance",
+        "spectrum, W·m⁻²·nm⁻¹ on a surface that faces the light",
+        Quantity::Spectrum(Role::Emission),
+    )]);
+    const POWER: fn(f64) -> f64 = |area| PI * area;
 
     fn new(place: DVec3) -> Self {
         Self(scalars(place))
-    }
-
-    fn power(area: f64) -> f64 {
-        PI * area
     }
 }
 
@@ -42,7 +36,7 @@ impl<T: Scalar> Light<T> for DirectionalLight<T> {
     const STRATEGY: &'static str = "by its one direction";
 
     #[inline(always)]
-    fn sample<L: Lanes<Scalar = T>>(&self, l: L, _: Vec3<L::Real>, _: [L::Real; 2]) -> Towards<L> {
+    fn sample<L: Lanes<Scalar = T>>(&self, l: L, _: Vec3<L::Real>, _u: [L::Real; 2]) -> Towards<L> {
         Towards {
             direction: vector(l, &self.0),
             distance: l.real(f64::INFINITY),

@@ -49,12 +49,7 @@ pub trait Light<T: Scalar>: Sized {
     }
 
     /// A direction from points p, by two numbers in [0, 1).
-    fn sample<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        p: Vec3<L::Real>,
-        numbers: [L::Real; 2],
-    ) -> Towards<L>;
+    fn sample<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>, u: [L::Real; 2]) -> Towards<L>;
 
     /// Density in solid angle with which [`Self::sample`] from p would have chosen the unit
     /// direction `direction`, which meets the light where its normal is `normal`; 0 where scattered
@@ -81,12 +76,12 @@ pub trait WithoutSurface<T: Scalar>: Light<T> {
     /// Its keys in scene files: the main one is a point or a direction, the one beside it a spectrum.
     const DECLARATION: Declaration;
 
+    /// About how much power it sends into the scene, over the strength of its spectrum; the argument
+    /// is about the area, over π, that parallel light falls on.
+    const POWER: fn(f64) -> f64;
+
     /// From its position about the camera, or the direction towards it.
     fn new(place: DVec3) -> Self;
-
-    /// About how much power it sends into the scene, over the strength of its spectrum; `area` is
-    /// about the area, over π, that parallel light falls on.
-    fn power(area: f64) -> f64;
 }
 
 macro_rules! lights {
@@ -159,11 +154,6 @@ macro_rules! lights {
 
         /// Evaluates an item of the type of a light without a surface.
         macro_rules! of_source {
-            ($kind:expr, $item:ident $arguments:tt) => {
-                match $kind {
-                    $(Self::$source => super::$source_module::$source_type::<f64>::$item $arguments,)*
-                }
-            };
             ($kind:expr, $item:ident) => {
                 match $kind {
                     $(Self::$source => super::$source_module::$source_type::<f64>::$item,)*
@@ -211,9 +201,9 @@ impl<T: Scalar> LightShape<T> {
         &self,
         l: L,
         p: Vec3<L::Real>,
-        numbers: [L::Real; 2],
+        u: [L::Real; 2],
     ) -> Towards<L> {
-        of!(self, light => light.sample(l, p, numbers))
+        of!(self, light => light.sample(l, p, u))
     }
 
     /// [`Light::pdf`].
@@ -240,9 +230,9 @@ impl SourceKind {
         of_source!(self, DECLARATION)
     }
 
-    /// [`WithoutSurface::power`].
+    /// [`WithoutSurface::POWER`].
     pub fn power(self, area: f64) -> f64 {
-        of_source!(self, power(area))
+        of_source!(self, POWER)(area)
     }
 }
 

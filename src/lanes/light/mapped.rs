@@ -136,24 +136,19 @@ impl<T: Scalar> Light<T> for MappedLight<T> {
     }
 
     #[inline(never)]
-    fn sample<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        p: Vec3<L::Real>,
-        numbers: [L::Real; 2],
-    ) -> Towards<L> {
+    fn sample<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>, u: [L::Real; 2]) -> Towards<L> {
         l.vectorize(inlined!(|| {
             let q = self.preimage(l, p);
             match &self.canonical {
                 Canonical::Sphere(sphere) => {
-                    let (towards, back) = self.mapped(l, &sphere.sample(l, q, numbers));
+                    let (towards, back) = self.mapped(l, &sphere.sample(l, q, u));
                     Towards {
                         pdf: sphere.density(l, q, back) * towards.pdf,
                         ..towards
                     }
                 }
                 Canonical::Cylinder(cylinder) => {
-                    let (towards, part) = cylinder.sample_part(l, q, numbers);
+                    let (towards, part) = cylinder.sample_part(l, q, u);
                     let (towards, back) = self.mapped(l, &towards);
                     Towards {
                         pdf: cylinder.pdf_of_part(l, q, back, &part) * towards.pdf,

@@ -14,22 +14,16 @@ use crate::math::vec3::Vec3;
 pub struct PointLight<T>(pub [T; 3]);
 
 impl<T: Scalar> WithoutSurface<T> for PointLight<T> {
-    const DECLARATION: Declaration = Declaration {
-        beside: &[Parameter {
-            key: "intensity",
-            what: "spectrum, W·sr⁻¹·nm⁻¹",
-            quantity: Quantity::Spectrum(Role::Emission),
-            default: None,
-        }],
-        ..Declaration::new("point", "position", Quantity::Point)
-    };
+    const DECLARATION: Declaration =
+        Declaration::new("point", "position", Quantity::Point).beside(&[Parameter::new(
+            "intensity",
+            "spectrum, W·sr⁻¹·nm⁻¹",
+            Quantity::Spectrum(Role::Emission),
+        )]);
+    const POWER: fn(f64) -> f64 = |_| 4.0 * PI;
 
     fn new(place: DVec3) -> Self {
         Self(scalars(place))
-    }
-
-    fn power(_area: f64) -> f64 {
-        4.0 * PI
     }
 }
 
@@ -38,7 +32,7 @@ impl<T: Scalar> Light<T> for PointLight<T> {
     const STRATEGY: &'static str = "by its one direction";
 
     #[inline(always)]
-    fn sample<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>, _: [L::Real; 2]) -> Towards<L> {
+    fn sample<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>, _u: [L::Real; 2]) -> Towards<L> {
         let to = vector(l, &self.0) - p;
         let squared = to.length_squared();
         let distance = squared.sqrt();

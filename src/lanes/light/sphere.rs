@@ -154,13 +154,8 @@ impl<T: Scalar> Light<T> for SphereLight<T> {
     }
 
     #[inline(always)]
-    fn sample<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        p: Vec3<L::Real>,
-        numbers: [L::Real; 2],
-    ) -> Towards<L> {
-        self.everywhere(l).sample(l, p, numbers, l.mask(true))
+    fn sample<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>, u: [L::Real; 2]) -> Towards<L> {
+        self.everywhere(l).sample(l, p, u, l.mask(true))
     }
 
     #[inline(always)]
