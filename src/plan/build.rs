@@ -219,7 +219,7 @@ impl<'a, T: Scalar> Builder<'a, T> {
                 self.implicits.push((index as u32, lanes));
             }
             Shape::Canonical(_) => {
-                let surface = &scene.materials[object.material].value.surface;
+                let surface = &scene.material_of(object).surface;
                 let priority = u8::from(surface.kind.refracts());
                 self.resolver.push(index as u32, placed, priority);
             }
@@ -237,7 +237,7 @@ impl<'a, T: Scalar> Builder<'a, T> {
     /// Gives object `index` its appearance, and makes a light of it if it can be sampled.
     fn appearance(&mut self, scene: &Scene, index: usize, placement: &Placement) {
         let object = &scene.objects[index].value;
-        let material = &scene.materials[object.material].value;
+        let material = scene.material_of(object);
         let surface = material.surface.record(object.size, |value| match value {
             Value::Spectrum(spectrum) => vec![self.spectrum(spectrum)],
             Value::Index(index) => self.refractive_index(index).into(),

@@ -3,10 +3,9 @@
 use crate::scene::{Light, Material, Scene, Shape};
 use crate::spectrum::Spectrum;
 
-/// The material of each object.
 fn materials(scene: &Scene) -> impl Iterator<Item = &Material> {
     let objects = scene.objects.iter();
-    objects.map(|object| &scene.materials[object.value.material].value)
+    objects.map(|object| scene.material_of(&object.value))
 }
 
 /// Whether some object is an implicit surface.

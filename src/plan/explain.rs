@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::bounds::{Blur, GAP_SHARE, PIXEL_SHARE};
-use super::choose::{Doubt, Precision, PrecisionReason};
+use super::choose::Precision;
 use super::{Plan, of_model};
 use crate::film::pixels::Pixels;
 use crate::integrate::model::Model;
@@ -28,12 +28,11 @@ pub fn explain(scene: &Scene, plan: &Plan) -> Vec<String> {
     lines.push(sampler(scene, plan));
     lines.push(depth(scene));
     lines.push(memory(scene, plan));
-    let carried = plan.left_out.iter();
-    lines.extend(
-        carried.map(|light| {
-            format!("light left out: {light}, which paths from the camera cannot carry")
-        }),
-    );
+    for light in &plan.left_out {
+        lines.push(format!(
+            "light left out: {light}, which paths from the camera cannot carry"
+        ));
+    }
     lines
 }
 
@@ -53,10 +52,8 @@ fn counted(words: impl Iterator<Item = String>) -> String {
     for word in words {
         *counts.entry(word).or_default() += 1;
     }
-    let counts: Vec<String> = counts
-        .into_iter()
-        .map(|(word, count)| format!("{count} {word}"))
-        .collect();
+    let counts = counts.into_iter();
+    let counts: Vec<String> = counts.map(|(word, n)| format!("{n} {word}")).collect();
     counts.join(", ")
 }
 
@@ -64,13 +61,13 @@ fn objects(scene: &Scene) -> String {
     if scene.objects.is_empty() {
         return "objects: none".to_owned();
     }
-    let dressed = scene.objects.iter().map(|object| {
-        let material = &scene.materials[object.value.material].value;
+    let objects = scene.objects.iter().map(|object| {
+        let material = scene.material_of(&object.value);
         let emits = material.emission.as_ref().map_or("", |_| ", emitting");
-        let dress = format!("{}{emits}", material.surface.words());
-        format!("{} ({dress})", shape_kind(&object.value))
+        let shape = shape_kind(&object.value);
+        format!("{shape} ({}{emits})", material.surface.words())
     });
-    format!("objects: {}", counted(dressed))
+    format!("objects: {}", counted(objects))
 }
 
 fn shape_kind(object: &Object) -> String {
@@ -144,10 +141,7 @@ fn lights(scene: &Scene, plan: &Plan) -> Vec<String> {
 /// What emits and is not sampled.
 fn found_only(scene: &Scene, sampled: &[Sampled]) -> Vec<String> {
     let emitting = scene.objects.iter().enumerate().filter(|(index, object)| {
-        let emits = scene.materials[object.value.material]
-            .value
-            .emission
-            .is_some();
+        let emits = scene.material_of(&object.value).emission.is_some();
         emits && !sampled.iter().any(|light| light.object as usize == *index)
     });
     let mut found: Vec<String> = emitting.map(|(_, object)| object.name.clone()).collect();
@@ -184,23 +178,15 @@ fn omitted(plan: &Plan) -> Option<String> {
     if plan.choices.full {
         return Some("left out of the loop: nothing, as asked for".to_owned());
     }
-    let names = named(plan.needs(), false);
-    let text = || {
-        format!(
-            "left out of the loop, as nothing here needs it: {}",
-            names.join(", ")
-        )
-    };
-    (!names.is_empty()).then(text)
+    let names = named(plan.needs(), false).join(", ");
+    (!names.is_empty()).then(|| format!("left out of the loop, as nothing here needs it: {names}"))
 }
 
 fn wavelengths(scene: &Scene, plan: &Plan) -> String {
     let count = plan.choices.wavelengths;
-    let disperses = scene.objects.iter().filter(|object| {
-        let material = &scene.materials[object.value.material].value;
-        material.surface.disperses()
-    });
-    let names: Vec<String> = disperses.map(|object| object.name.clone()).collect();
+    let objects = scene.objects.iter();
+    let disperse = objects.filter(|o| scene.material_of(&o.value).surface.disperses());
+    let names: Vec<String> = disperse.map(|object| object.name.clone()).collect();
     if names.is_empty() {
         format!("wavelengths: {count} a path; nothing disperses, so all live to the end")
     } else {
@@ -212,28 +198,25 @@ fn wavelengths(scene: &Scene, plan: &Plan) -> String {
 }
 
 fn precision(plan: &Plan) -> String {
-    let name = match plan.choices.precision {
-        Precision::Single => "single (f32)",
-        Precision::Double => "double (f64)",
+    let choices = &plan.choices;
+    let (name, verdict) = match choices.precision {
+        Precision::Single => ("single (f32)", "suffices"),
+        Precision::Double => ("double (f64)", "because single does not suffice"),
     };
-    let blur = match plan.choices.precision_reason {
-        PrecisionReason::Asked { .. } => {
-            let doubt = doubt(plan).map_or_else(String::new, |doubt| format!("; {doubt}"));
-            return format!("precision: {name}, as asked for{doubt}");
-        }
-        PrecisionReason::Implicit => {
-            return format!(
-                "precision: {name}: hits on implicit surfaces are proved in double, and rays leave \
-                 from where they are"
-            );
-        }
-        PrecisionReason::Measured(blur) => blur,
-    };
-    let verdict = match plan.choices.precision {
-        Precision::Single => "suffices",
-        Precision::Double => "because single does not suffice",
-    };
-    format!("precision: {name} {verdict}: in single, {}", bound(blur))
+    if choices.asked {
+        let doubt = doubt(plan).map_or_else(String::new, |doubt| format!("; {doubt}"));
+        return format!("precision: {name}, as asked for{doubt}");
+    }
+    if choices.implicit {
+        return format!(
+            "precision: {name}: hits on implicit surfaces are proved in double, and rays leave from \
+             where they are"
+        );
+    }
+    format!(
+        "precision: {name} {verdict}: in single, {}",
+        bound(choices.blur)
+    )
 }
 
 /// How far off positions may be in single precision.
@@ -256,21 +239,24 @@ fn bound(blur: Blur) -> String {
 
 /// What speaks against the precision that was asked for, if anything does.
 pub fn doubt(plan: &Plan) -> Option<String> {
-    let PrecisionReason::Asked { doubt: Some(doubt) } = plan.choices.precision_reason else {
+    let choices = &plan.choices;
+    let single = choices.asked && choices.precision == Precision::Single;
+    if !single || choices.single_suffices() {
         return None;
-    };
-    Some(match doubt {
-        Doubt::Blur(blur) => format!(
+    }
+    if !choices.implicit {
+        return Some(format!(
             "double would have been taken, because in single {}",
-            bound(blur)
-        ),
-        Doubt::Implicit(Blur { position, .. }) => format!(
-            "double would have been taken: hits on implicit surfaces are proved in double and then \
-             rounded to single, which puts them off by up to {position:.1e}, so that sheets closer than {:.1e} \
-             may be taken one for the other",
-            position / GAP_SHARE
-        ),
-    })
+            bound(choices.blur)
+        ));
+    }
+    let position = choices.blur.position;
+    Some(format!(
+        "double would have been taken: hits on implicit surfaces are proved in double and then \
+         rounded to single, which puts them off by up to {position:.1e}, so that sheets closer than {:.1e} \
+         may be taken one for the other",
+        position / GAP_SHARE
+    ))
 }
 
 fn intersection(scene: &Scene, plan: &Plan) -> String {
@@ -278,15 +264,13 @@ fn intersection(scene: &Scene, plan: &Plan) -> String {
         (model.hierarchy.is_some(), model.occluders.objects.len())
     });
     let count = scene.objects.len();
-    let mut text = format!(
-        "intersection: {}; what lanes leave undecided goes to the exact ladder",
-        if hierarchy {
-            format!("a hierarchy of boxes over {count} objects")
-        } else {
-            let noun = if count == 1 { "object" } else { "objects" };
-            format!("each ray asks a list of {count} {noun}")
-        }
-    );
+    let way = match (hierarchy, count) {
+        (true, _) => format!("a hierarchy of boxes over {count} objects"),
+        (false, 1) => "each ray asks a list of 1 object".to_owned(),
+        (false, _) => format!("each ray asks a list of {count} objects"),
+    };
+    let mut text =
+        format!("intersection: {way}; what lanes leave undecided goes to the exact ladder");
     if occluders < count {
         text.push_str(&format!(
             "; shadow rays ask {occluders}, as the others can hide no light"

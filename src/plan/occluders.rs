@@ -27,7 +27,7 @@ pub fn occluders(scene: &Scene, lit: &[u32], roundoff: f64) -> Vec<u32> {
         .map(|o| about_camera(scene, &o.value))
         .collect();
     let is_end = |k: usize| {
-        let material = &scene.materials[scene.objects[k].value.material].value;
+        let material = scene.material_of(&scene.objects[k].value);
         material.surface.kind.is_spread() || lit.contains(&(k as u32))
     };
     let hides = |k: usize| {

@@ -115,6 +115,11 @@ impl Scene {
         self.lay("image.seed", seed.to_string());
     }
 
+    /// The material of one of the scene's objects.
+    pub fn material_of(&self, object: &Object) -> &Material {
+        &self.materials[object.material].value
+    }
+
     fn lay(&mut self, key: &str, value: String) {
         self.source.set.retain(|(other, _)| other != key);
         self.source.set.push((key.to_owned(), value));

@@ -23,8 +23,7 @@ pub fn shift(scene: &Scene, sites: &[Site], roundoff: f64, reach: f64) -> f64 {
     let central = scene.camera.projection.kind.is_central();
     let receives = |site: &&Site| {
         let object = &scene.objects[site.index].value;
-        let material = &scene.materials[object.material].value;
-        material.surface.kind.is_spread()
+        scene.material_of(object).surface.kind.is_spread()
     };
     // Where receivers begin and end.
     let receivers = sites.iter().filter(receives).map(|site| {
