@@ -50,20 +50,17 @@ pub fn build<T: Scalar>(
 ) -> Result<(Model<T>, Spectrometer<T>), PlanError> {
     let mut builder = Builder::<T>::new(choices.wavelengths as usize, grid, scene);
     for (index, object) in scene.objects.iter().enumerate() {
-        let placed = builder
-            .place(scene, index)
-            .ok_or(PlanError::NotInvertible {
-                name: object.name.clone(),
-            })?;
-        builder.appearance(scene, index, &placed);
+        let placed = builder.place(scene, index);
+        let maps = placed.ok_or_else(|| PlanError::NotInvertible {
+            name: object.name.clone(),
+        })?;
+        builder.appearance(scene, index, &maps);
     }
     for light in &scene.lights {
         builder.source(light, scene.camera.from);
     }
-    let environment = scene
-        .environment
-        .as_ref()
-        .map(|spectrum| builder.spectrum(spectrum));
+    let environment = scene.environment.as_ref();
+    let environment = environment.map(|spectrum| builder.spectrum(spectrum));
     let lights = builder.pick();
     let all: Vec<u32> = (0..scene.objects.len() as u32).collect();
     let occluders = if choices.full {
@@ -74,15 +71,12 @@ pub fn build<T: Scalar>(
     };
     let parts = Parts::new(&builder.shapes, &builder.appearances);
     let camera = LaneCamera::new(&scene.camera, scene.image.size);
-    let list_costs: usize = builder
-        .bounded
-        .iter()
-        .map(|item| match builder.shapes[item.0 as usize].ball() {
-            Some(_) => 1,
-            None => OTHER,
-        })
-        .sum();
-    let many = list_costs > LARGEST_LIST;
+    let bounded = builder.bounded.iter();
+    let costs = bounded.map(|(k, _)| match builder.shapes[*k as usize].ball() {
+        Some(_) => 1,
+        None => OTHER,
+    });
+    let many = costs.sum::<usize>() > LARGEST_LIST;
     let model = Model {
         hierarchy: many.then(|| {
             Many::new(
@@ -120,12 +114,6 @@ pub fn build<T: Scalar>(
         planted: None,
     };
     Ok((model, Spectrometer::new(grid, choices.wavelengths as usize)))
-}
-
-/// Where an object stands: its map about the camera and the inverse.
-struct Placement {
-    to_world: Affine,
-    inverse: Affine,
 }
 
 struct Builder<'a, T> {
@@ -181,24 +169,22 @@ impl<'a, T: Scalar> Builder<'a, T> {
         if let Some((_, starts)) = self.known_indices.iter().find(|(i, _)| i == index) {
             return *starts;
         }
-        let nodes: Vec<(f64, f64)> = match index {
-            RefractiveIndex::Complex { .. } => self
-                .grid
-                .edges()
-                .windows(2)
-                .map(|cell| index.n_k((cell[0] + cell[1]) / 2.0))
-                .collect(),
-            _ => self.grid.edges().iter().map(|&nm| index.n_k(nm)).collect(),
+        let edges = self.grid.edges();
+        let (n, k): (Vec<f64>, Vec<f64>) = match index {
+            RefractiveIndex::Complex { .. } => {
+                let middles = edges.windows(2).map(|cell| (cell[0] + cell[1]) / 2.0);
+                middles.map(|nm| index.n_k(nm)).unzip()
+            }
+            _ => edges.iter().map(|&nm| index.n_k(nm)).unzip(),
         };
-        let n: Vec<f64> = nodes.iter().map(|nk| nk.0).collect();
-        let k: Vec<f64> = nodes.iter().map(|nk| nk.1).collect();
         let starts = [self.bank.push(&n), self.bank.push(&k)];
         self.known_indices.push((index.clone(), starts));
         starts
     }
 
-    /// Places object `index` for the lanes and for the ladder.
-    fn place(&mut self, scene: &Scene, index: usize) -> Option<Placement> {
+    /// Places object `index` for the lanes and for the ladder; its map to the world about the camera,
+    /// and the inverse.
+    fn place(&mut self, scene: &Scene, index: usize) -> Option<[Affine; 2]> {
         let object = &scene.objects[index].value;
         let to_world = about_camera(scene, object);
         let kind = object.shape.kind();
@@ -207,12 +193,9 @@ impl<'a, T: Scalar> Builder<'a, T> {
         if !inverse.rows.iter().flatten().all(|x| x.is_finite()) {
             return None;
         }
-        self.shapes.push(LaneShape::new(
-            kind,
-            &to_world,
-            &inverse,
-            START * self.reach,
-        ));
+        let start = START * self.reach;
+        self.shapes
+            .push(LaneShape::new(kind, &to_world, &inverse, start));
         match &object.shape {
             Shape::Implicit(implicit) => {
                 let lanes = LaneImplicit::new(implicit, &to_world, &inverse).ok()?;
@@ -231,11 +214,11 @@ impl<'a, T: Scalar> Builder<'a, T> {
             }
             None => self.unbounded.push(index as u32),
         }
-        Some(Placement { to_world, inverse })
+        Some([to_world, inverse])
     }
 
     /// Gives object `index` its appearance, and makes a light of it if it can be sampled.
-    fn appearance(&mut self, scene: &Scene, index: usize, placement: &Placement) {
+    fn appearance(&mut self, scene: &Scene, index: usize, maps: &[Affine; 2]) {
         let object = &scene.objects[index].value;
         let material = scene.material_of(object);
         let surface = material.surface.record(object.size, |value| match value {
@@ -258,8 +241,8 @@ impl<'a, T: Scalar> Builder<'a, T> {
                     .shape
                     .kind()
                     .map_or(Emitter::Unsampled, ShapeKind::emitter),
-                to_world: &placement.to_world,
-                inverse: &placement.inverse,
+                to_world: &maps[0],
+                inverse: &maps[1],
                 emits: appearance.emits,
             });
             if let Some((shape, area)) = light {
@@ -314,21 +297,19 @@ impl<'a, T: Scalar> Builder<'a, T> {
         let mut sum = 0.0;
         let lights = std::mem::take(&mut self.lights);
         let last = lights.len().saturating_sub(1);
-        lights
-            .into_iter()
-            .enumerate()
-            .map(|(i, (mut light, power))| {
-                sum += 0.5 / count + 0.5 * power / total;
-                let end = if i == last { 1.0 } else { sum };
-                light.below = below;
-                // Uniform numbers are multiples of the step in either precision: among such bounds
-                // the probability is exactly their distance.
-                let next = T::from_f64((end / PROBABILITY_STEP).round() * PROBABILITY_STEP);
-                light.probability = T::from_f64(next.to_f64() - below.to_f64());
-                below = next;
-                light
-            })
-            .collect()
+        let lights = lights.into_iter().enumerate();
+        let picked = lights.map(|(i, (mut light, power))| {
+            sum += 0.5 / count + 0.5 * power / total;
+            let end = if i == last { 1.0 } else { sum };
+            light.below = below;
+            // Uniform numbers are multiples of the step in either precision: among such bounds the
+            // probability is exactly their distance.
+            let next = T::from_f64((end / PROBABILITY_STEP).round() * PROBABILITY_STEP);
+            light.probability = T::from_f64(next.to_f64() - below.to_f64());
+            below = next;
+            light
+        });
+        picked.collect()
     }
 }
 

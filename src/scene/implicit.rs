@@ -6,9 +6,9 @@ use std::sync::Arc;
 use glam::DVec3;
 use num_rational::BigRational;
 
-use super::fields::{Fields, Report};
+use super::fields::{Fields, Report, every};
 use super::objects::SHAPES;
-use super::tree::{Node, Place, Value};
+use super::tree::{Entry, Node, Place, Value};
 use super::{FinderChoice, Implicit};
 use crate::field::expression::{
     self, Expression, ExpressionError, Parameter, check_name, parse_constant, rational,
@@ -104,19 +104,16 @@ fn check(
     if implicit.finder != FinderChoice::Polynomial || polynomial {
         return Some(());
     }
-    if implicit.closed {
-        let message =
-            "the finder \"polynomial\" for a closed surface, whose caps are no polynomial";
-        let expected = "\"auto\", \"interval\", \"sphere-trace\" or \"sign-change\"";
-        let place = chosen_at.unwrap_or(written.place);
-        return report.fail(place, message.to_owned(), expected);
-    }
-    // The finder may be asked for far from the field.
-    let text = report.text("object.shape.implicit", written)?;
-    let shown: String = text.chars().take(SHOWN).collect();
-    let rest = if shown.len() < text.len() { "…" } else { "" };
-    let message =
-        format!("the finder \"polynomial\" for a field that is no polynomial: {shown}{rest}");
+    let problem = if implicit.closed {
+        "a closed surface, whose caps are no polynomial".to_owned()
+    } else {
+        // The finder may be asked for far from the field.
+        let text = report.text("object.shape.implicit", written)?;
+        let shown: String = text.chars().take(SHOWN).collect();
+        let rest = if shown.len() < text.len() { "…" } else { "" };
+        format!("a field that is no polynomial: {shown}{rest}")
+    };
+    let message = format!("the finder \"polynomial\" for {problem}");
     let expected = "\"auto\", \"interval\", \"sphere-trace\" or \"sign-change\"";
     report.fail(chosen_at.unwrap_or(written.place), message, expected)
 }
@@ -161,26 +158,9 @@ fn parameters(
     let Value::Table(table) = &node.value else {
         return report.wrong_type(what, node, "a table of names and values");
     };
-    let mut read: Vec<Option<Parameter>> = Vec::with_capacity(table.entries.len());
     let mut known: Vec<Parameter> = Vec::with_capacity(table.entries.len());
-    for entry in &table.entries {
-        let allowed = match surface {
-            Some(surface) => {
-                let names: Vec<&str> = surface.parameters.iter().map(|(name, _)| *name).collect();
-                let message = format!("\"{}\" is no parameter of {}", entry.key, surface.name);
-                match names.contains(&entry.key.as_str()) {
-                    true => Some(()),
-                    false => report.unknown(entry.key_place, message, &entry.key, &names),
-                }
-            }
-            None => match check_name(&entry.key) {
-                Ok(()) => Some(()),
-                Err(problem) => {
-                    let error = ExpressionError::from(problem);
-                    report.complain(entry.key_place, error.to_string(), error.expected)
-                }
-            },
-        };
+    let read = table.entries.iter().map(|entry| {
+        let allowed = check_parameter(report, entry, surface);
         let what = format!("{what}.{}", entry.key);
         let value = value(report, &what, &entry.node, &known);
         let parameter = allowed.and(value).map(|value| Parameter {
@@ -188,9 +168,29 @@ fn parameters(
             value,
         });
         known.extend(parameter.clone());
-        read.push(parameter);
+        parameter
+    });
+    every(read)
+}
+
+/// A named surface has its own parameters; those of an expression must not mean something already.
+fn check_parameter(report: &Report, entry: &Entry, surface: Option<&NamedSurface>) -> Option<()> {
+    let (key, place) = (&entry.key, entry.key_place);
+    let Some(surface) = surface else {
+        return check_name(key).map_or_else(
+            |problem| {
+                let error = ExpressionError::from(problem);
+                report.complain(place, error.to_string(), error.expected)
+            },
+            Some,
+        );
+    };
+    let names: Vec<&str> = surface.parameters.iter().map(|(name, _)| *name).collect();
+    if names.contains(&key.as_str()) {
+        return Some(());
     }
-    read.into_iter().collect()
+    let message = format!("\"{key}\" is no parameter of {}", surface.name);
+    report.unknown(place, message, key, &names)
 }
 
 /// A number as written, or a constant expression of numbers and parameters above.
@@ -228,26 +228,27 @@ fn complain<T>(report: &Report, node: &Node, text: &str, error: &ExpressionError
 /// ends keep its bytes from being those of the origin.
 fn inner(node: &Node, text: &str, span: &Range<usize>) -> Place {
     let written = node.written.as_deref().unwrap_or("");
-    let multi_line = [
+    let openings = [
         "\"\"\"\r\n",
         "'''\r\n",
         "\"\"\"\n",
         "'''\n",
         "\"\"\"",
         "'''",
+        "\"",
+        "'",
+        "",
     ];
-    let openings = multi_line.iter().chain(&["\"", "'", ""]);
-    let same = |opening: &&&str| {
-        let rest = written.strip_prefix(**opening);
+    let same = |opening: &&str| {
+        let rest = written.strip_prefix(*opening);
         let closing = opening.trim_end();
         rest.and_then(|rest| rest.strip_suffix(closing)) == Some(text)
     };
     match openings.into_iter().find(same) {
-        Some(opening) => Place {
-            start: node.place.start + opening.len() + span.start,
-            end: node.place.start + opening.len() + span.end,
-            ..node.place
-        },
+        Some(opening) => {
+            let start = node.place.start + opening.len();
+            Place::new(node.place.origin, start + span.start..start + span.end)
+        }
         None => node.place,
     }
 }
