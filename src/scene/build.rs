@@ -4,10 +4,10 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::fields::{Fields, Report, every, one_of};
+use super::fields::{Fields, Item, Report, every, one_of};
 use super::implicit::DefaultFinder;
 use super::spectra::{self, Spectra};
-use super::tree::{Node, Place, Table};
+use super::tree::{Place, Table};
 use super::{
     Camera, FinderChoice, Image, Light, Material, Named, Object, PrecisionChoice, Projection,
     ProjectionKind, SamplerKind, materials, objects, quantities,
@@ -65,24 +65,20 @@ pub(super) fn scene(report: &Report, base_dir: &Path, root: &Table) -> Option<Pa
     let end = Place::new(0, usize::MAX..usize::MAX);
     let top = Fields::of(report, String::new(), end, root, TOP_KEYS);
     for key in ["title", "about"] {
-        top.optional(key, "", |what, node| report.text(what, node));
+        top.optional(key, "", |item| item.text());
     }
     let spectra = Spectra::read(report, base_dir, top.get("spectra"));
-    let camera = top.required("camera", "a [camera] table", |_, node| {
-        camera(&spectra, node)
-    });
-    let image = top.required("image", "an [image] table", |_, node| image(report, node));
-    let materials = materials::read(&spectra, top.get("materials"));
-    let environment = spectra::environment(&spectra, root);
-    let truth = top.optional("truth", None, |what, node| {
-        spectra.spectrum(what, node, Role::Emission).map(Some)
-    });
+    let camera = top.required("camera", "a [camera] table", |item| camera(&spectra, item));
+    let image = top.required("image", "an [image] table", image);
+    let materials = materials::read(&spectra, top.item("materials"));
+    let environment = top.maybe("environment", |item| spectra::environment(&spectra, item));
+    let truth = top.maybe("truth", |item| spectra.spectrum(&item, Role::Emission));
     // Without a readable table of materials every use of one would be a further complaint.
     let hidden = materials.is_none() || (top.get("materials").is_none() && top.misspelt());
     let materials = materials.unwrap_or_default();
     let (image, finder) = image.unwrap_or((None, (FinderChoice::Auto, None)));
-    let objects = objects::read(report, top.get("object"), &materials.names, hidden, &finder);
-    let lights = lights(&spectra, top.get("light"));
+    let objects = objects::read(top.item("object"), &materials.names, hidden, &finder);
+    let lights = top.optional("light", Vec::new(), |item| lights(&spectra, &item));
     Some(Parts {
         look: Look {
             camera: camera?,
@@ -96,10 +92,10 @@ pub(super) fn scene(report: &Report, base_dir: &Path, root: &Table) -> Option<Pa
     })
 }
 
-fn camera(spectra: &Spectra<'_>, node: &Node) -> Option<Camera> {
+fn camera(spectra: &Spectra<'_>, item: Item<'_>) -> Option<Camera> {
     let view = Camera::VIEW.map(|own| own.key);
     let keys = [&view, ProjectionKind::KEYS, &[Camera::LENS.key]].concat();
-    let fields = Fields::open(spectra.report, "camera", node, &keys)?;
+    let fields = Fields::open(item, &keys)?;
     let values = quantities::all(spectra, &fields, Camera::VIEW.iter().chain([&Camera::LENS]));
     let projection = projection(spectra, &fields);
     let camera = Camera::new(&values?, projection?)?;
@@ -109,7 +105,7 @@ fn camera(spectra: &Spectra<'_>, node: &Node) -> Option<Camera> {
 
 fn projection(spectra: &Spectra<'_>, fields: &Fields<'_>) -> Option<Projection> {
     let parameters = || ProjectionKind::ALL.iter().map(|kind| kind.parameter());
-    let Some((key, node)) = fields.at_most_one(ProjectionKind::KEYS)? else {
+    let Some((key, item)) = fields.at_most_one(ProjectionKind::KEYS)? else {
         let ways: Vec<String> = parameters().map(|own| quantities::assigned(&own)).collect();
         let message = format!("camera has neither {}", ProjectionKind::KEYS.join(" nor "));
         return fields.missing(message, &ways.join(", or "));
@@ -117,8 +113,7 @@ fn projection(spectra: &Spectra<'_>, fields: &Fields<'_>) -> Option<Projection> 
     let kind = *ProjectionKind::ALL
         .iter()
         .find(|kind| kind.parameter().key == key)?;
-    let path = fields.path(key);
-    let values = quantities::read(spectra, &path, node, kind.parameter().quantity, &[])?;
+    let values = quantities::read(spectra, item, kind.parameter().quantity, &[])?;
     let value = values.first()?.number()?;
     Some(Projection { kind, value })
 }
@@ -165,40 +160,24 @@ fn check_view(fields: &Fields<'_>, camera: &Camera) -> Option<()> {
 }
 
 /// `[image]`: the image, and the finder of objects that name none.
-fn image(report: &Report, node: &Node) -> Option<(Option<Image>, DefaultFinder)> {
-    let fields = Fields::open(report, "image", node, IMAGE_KEYS)?;
-    let size = fields.required("size", "size = [width, height]", |what, node| {
-        image_size(report, what, node)
+fn image(item: Item<'_>) -> Option<(Option<Image>, DefaultFinder)> {
+    let fields = Fields::open(item, IMAGE_KEYS)?;
+    let size = fields.required("size", "size = [width, height]", |item| image_size(&item));
+    let spp = fields.required("spp", "spp = camera paths per pixel", |item| {
+        item.integer(1..=1 << 24)
     });
-    let spp = fields.required("spp", "spp = camera paths per pixel", |what, node| {
-        report.count(what, node, 1..=1 << 24)
+    let max_depth = fields.maybe("max_depth", |item| item.integer(1..=u32::MAX));
+    let sampler = fields.optional("sampler", SamplerKind::Sobol, |item| {
+        item.choice(SamplerKind::ALL, SamplerKind::name)
     });
-    let max_depth = fields.optional("max_depth", None, |what, node| {
-        report.count(what, node, 1..=u32::MAX).map(Some)
+    let replicates = fields.maybe("replicates", |item| item.integer(1..=64));
+    let seed = fields.optional("seed", 0, |item| item.integer(0..=i64::MAX as u64));
+    let precision = fields.optional("precision", PrecisionChoice::Auto, |item| {
+        item.choice(&PrecisionChoice::ALL, PrecisionChoice::name)
     });
-    let sampler = fields.optional("sampler", SamplerKind::Sobol, |what, node| {
-        report.choice(what, node, SamplerKind::ALL, |kind| kind.name())
-    });
-    let replicates = fields.optional("replicates", None, |what, node| {
-        report.count(what, node, 1..=64).map(Some)
-    });
-    let seed = fields.optional("seed", 0, |what, node| {
-        let seed = report.integer(what, node, 0..=i64::MAX)?;
-        u64::try_from(seed).ok()
-    });
-    let precision = fields.optional("precision", PrecisionChoice::Auto, |what, node| {
-        let all = [
-            PrecisionChoice::Auto,
-            PrecisionChoice::F32,
-            PrecisionChoice::F64,
-        ];
-        report.choice(what, node, &all, |choice| choice.name())
-    });
-    let wavelengths = fields.optional("wavelengths", None, |what, node| {
-        match report.count(what, node, 1..=64)? {
-            count @ (4 | 8) => Some(Some(count)),
-            count => report.fail(node.place, format!("{what} is {count}"), "4 or 8"),
-        }
+    let wavelengths = fields.maybe("wavelengths", |item| match item.integer(1..=64)? {
+        count @ (4 | 8) => Some(count),
+        count => item.wrong(count, "4 or 8"),
     });
     if let (Some(spp), Some(Some(replicates))) = (spp, replicates)
         && replicates > spp
@@ -207,11 +186,12 @@ fn image(report: &Report, node: &Node) -> Option<(Option<Image>, DefaultFinder)>
         let places = ["spp", "replicates"].map(|key| fields.get(key).map(|node| node.place));
         let place = places.into_iter().flatten().max().unwrap_or(fields.place);
         let message = format!("image.replicates is {replicates}, but image.spp is {spp}");
-        report.fail::<()>(place, message, "at least one camera path in each replicate");
+        fields
+            .report
+            .fail::<()>(place, message, "at least one camera path in each replicate");
     }
-    let finder = fields.optional("finder", (FinderChoice::Auto, None), |what, node| {
-        Some((report.finder(what, node)?, Some(node.place)))
-    });
+    let none = (FinderChoice::Auto, None);
+    let finder = fields.optional("finder", none, |item| item.finder());
     let image = || {
         Some(Image {
             size: size?,
@@ -224,36 +204,37 @@ fn image(report: &Report, node: &Node) -> Option<(Option<Image>, DefaultFinder)>
             wavelengths: wavelengths?,
         })
     };
-    Some((image(), finder.unwrap_or((FinderChoice::Auto, None))))
+    Some((image(), finder.unwrap_or(none)))
 }
 
-fn image_size(report: &Report, what: &str, node: &Node) -> Option<[u32; 2]> {
-    let expected = "[width, height] in pixels, each from 1 to 65536";
-    let [width, height] = report.array(what, node, expected)?;
-    let width = report.count(&format!("{what}[0]"), width, 1..=65536)?;
-    let height = report.count(&format!("{what}[1]"), height, 1..=65536)?;
+fn image_size(item: &Item<'_>) -> Option<[u32; 2]> {
+    let [width, height] = item.array("[width, height] in pixels, each from 1 to 65536")?;
+    let [width, height] = [width.integer(1..=65536)?, height.integer(1..=65536)?];
     if u64::from(width) * u64::from(height) > 1 << 28 {
-        let message = format!("{what} is {width} × {height}");
-        return report.fail(node.place, message, "at most 2^28 = 268435456 pixels");
+        return item.wrong(
+            format!("{width} × {height}"),
+            "at most 2^28 = 268435456 pixels",
+        );
     }
     Some([width, height])
 }
 
-fn lights(spectra: &Spectra<'_>, node: Option<&Node>) -> Option<Vec<Light>> {
-    let Some(node) = node else {
-        return Some(Vec::new());
-    };
-    let nodes = spectra.report.list("light", node, "[[light]] tables")?;
-    every(nodes.iter().map(|node| light(spectra, node)))
+fn lights(spectra: &Spectra<'_>, item: &Item<'_>) -> Option<Vec<Light>> {
+    let nodes = item.nodes("[[light]] tables")?.iter();
+    let items = nodes.map(|node| Item {
+        node,
+        ..item.clone()
+    });
+    every(items.map(|item| light(spectra, item)))
 }
 
-fn light(spectra: &Spectra<'_>, node: &Node) -> Option<Light> {
+fn light(spectra: &Spectra<'_>, item: Item<'_>) -> Option<Light> {
     let declarations = || SourceKind::ALL.iter().map(|kind| kind.declaration());
     let main: Vec<&str> = declarations().map(|own| own.main.key).collect();
     let beside = declarations().flat_map(|own| own.beside);
     let beside: Vec<&str> = beside.map(|own| own.key).collect();
     let keys = [main.as_slice(), &beside].concat();
-    let fields = Fields::open(spectra.report, "light", node, &keys)?;
+    let fields = Fields::open(item, &keys)?;
     let (key, place) = fields.exactly_one(&main)?;
     let of_key = |kind: &&SourceKind| kind.declaration().main.key == key;
     let kind = *SourceKind::ALL.iter().find(of_key)?;
@@ -267,7 +248,7 @@ fn light(spectra: &Spectra<'_>, node: &Node) -> Option<Light> {
                 .fail(entry.key_place, message, one_of(&own_keys));
         }
     }
-    let main = quantities::read(spectra, &fields.path(key), place, own.main.quantity, &[]);
+    let main = quantities::read(spectra, place, own.main.quantity, &[]);
     let beside = quantities::all(spectra, &fields, own.beside);
     let values = [main?, beside?].concat();
     Some(Light { kind, values })

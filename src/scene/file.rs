@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::build;
 use super::error::{Diagnostic, Origin, SceneError};
-use super::fields::{Complaint, Fields, Report};
+use super::fields::{Complaint, Fields, Item, Report};
 use super::overlay::{self, Setting};
 use super::tree::{self, Entry, Node, Origins, Place, Table, Value};
 use super::{Scene, Source};
@@ -227,11 +227,18 @@ fn panels(report: &Report, root: &mut Table) -> Vec<Panel> {
     let Some(node) = root.remove("panel") else {
         return Vec::new();
     };
-    let nodes = report.list("panel", &node, "[[panel]] tables");
-    let nodes = nodes.unwrap_or_default();
+    let item = Item {
+        report,
+        path: "panel".to_owned(),
+        node: &node,
+    };
+    let nodes = item.nodes("[[panel]] tables").unwrap_or_default();
     let mut panels: Vec<Panel> = Vec::with_capacity(nodes.len());
     for node in nodes {
-        let Some(panel) = panel(report, node) else {
+        let Some(panel) = panel(Item {
+            node,
+            ..item.clone()
+        }) else {
             continue;
         };
         if panels.iter().any(|other| other.name == panel.name) {
@@ -243,11 +250,12 @@ fn panels(report: &Report, root: &mut Table) -> Vec<Panel> {
     panels
 }
 
-fn panel(report: &Report, node: &Node) -> Option<Panel> {
+fn panel(item: Item<'_>) -> Option<Panel> {
+    let place = item.node.place;
     let keys = [&["name"], build::IMAGE_KEYS, TABLES].concat();
-    let fields = Fields::open(report, "panel", node, &keys)?;
-    let name = fields.required("name", "name = \"…\"", |what, node| {
-        report.text(what, node).map(|name| (name, node.place))
+    let fields = Fields::open(item, &keys)?;
+    let name = fields.required("name", "name = \"…\"", |item| {
+        Some((item.text()?, item.node.place))
     });
     let mut over = Table::default();
     let mut image = Table::default();
@@ -260,8 +268,8 @@ fn panel(report: &Report, node: &Node) -> Option<Panel> {
         }
     }
     if !image.entries.is_empty() {
-        let image = Node::new(node.place, Value::Table(image));
-        over.put(Entry::new("image", node.place, image));
+        let image = Node::new(place, Value::Table(image));
+        over.put(Entry::new("image", place, image));
     }
     name.map(|(name, name_place)| Panel {
         name: name.to_owned(),

@@ -2,10 +2,10 @@
 
 use std::sync::LazyLock;
 
-use super::fields::{Fields, every, one_of};
+use super::fields::{Fields, Item, every, one_of};
 use super::quantities;
 use super::spectra::Spectra;
-use super::tree::{Node, Value};
+use super::tree::{Node, Table, Value};
 use super::{Emission, Material, Named, Sides, Surface};
 use crate::declare::{self, Declaration, Parameter, Role};
 use crate::material::MaterialKind;
@@ -65,21 +65,25 @@ pub(super) fn companions() -> Vec<(&'static str, &'static str)> {
 }
 
 /// Reads `[materials]`; `None` if that is no table at all.
-pub(super) fn read(spectra: &Spectra<'_>, node: Option<&Node>) -> Option<Materials> {
-    let Some(node) = node else {
-        return Some(Materials {
-            names: Vec::new(),
-            checked: Some(Vec::new()),
-        });
-    };
-    let Value::Table(table) = &node.value else {
-        return spectra
-            .report
-            .wrong_type("materials", node, "a table of named materials");
+pub(super) fn read(spectra: &Spectra<'_>, item: Option<Item<'_>>) -> Option<Materials> {
+    let empty = Table::default();
+    let table = match item.as_ref().map(|item| (item, &item.node.value)) {
+        None => &empty,
+        Some((_, Value::Table(table))) => table,
+        Some((item, _)) => return item.wrong_type("a table of named materials"),
     };
     let read = table.entries.iter().map(|entry| {
         let name = entry.key.clone();
-        let value = material(spectra, &name, &entry.node)?;
+        let item = Item {
+            report: spectra.report,
+            path: format!("materials.{name}"),
+            node: &entry.node,
+        };
+        let fields = Fields::open(item, &KEYS)?;
+        let surface = surface(spectra, &fields);
+        let emission = emission(spectra, &fields);
+        let (surface, emission) = (surface?, emission?);
+        let value = Material { surface, emission };
         Some(Named { name, value })
     });
     Some(Materials {
@@ -92,27 +96,17 @@ pub(super) fn read(spectra: &Spectra<'_>, node: Option<&Node>) -> Option<Materia
     })
 }
 
-fn material(spectra: &Spectra<'_>, name: &str, node: &Node) -> Option<Material> {
-    let fields = Fields::open(spectra.report, format!("materials.{name}"), node, &KEYS)?;
-    let surface = surface(spectra, &fields);
-    let emission = emission(spectra, &fields);
-    Some(Material {
-        surface: surface?,
-        emission: emission?,
-    })
-}
-
 fn surface(spectra: &Spectra<'_>, fields: &Fields<'_>) -> Option<Surface> {
     let found = fields.at_most_one(&KINDS)?;
-    lonely(fields, found.map(|(key, _)| key))?;
-    let Some((key, node)) = found else {
+    lonely(fields, found.as_ref().map(|(key, _)| *key))?;
+    let Some((key, item)) = found else {
         return Some(Surface {
             kind: MaterialKind::Black,
             values: Vec::new(),
         });
     };
-    let kind = kind(key, node)?;
-    let main = main(spectra, &fields.path(key), node, kind);
+    let kind = kind(key, item.node)?;
+    let main = main(spectra, item, kind);
     let beside = quantities::all(spectra, fields, kind.declaration().beside);
     let values = [main?, beside?].concat();
     Some(Surface { kind, values })
@@ -134,12 +128,7 @@ fn kind(key: &str, node: &Node) -> Option<MaterialKind> {
 }
 
 /// Reads the main value of a kind.
-fn main(
-    spectra: &Spectra<'_>,
-    path: &str,
-    node: &Node,
-    kind: MaterialKind,
-) -> Option<Vec<declare::Value>> {
+fn main(spectra: &Spectra<'_>, item: Item<'_>, kind: MaterialKind) -> Option<Vec<declare::Value>> {
     let own = kind.declaration();
     let others = declarations().filter(|other| other.main.key == own.main.key);
     let Some(within) = own.within else {
@@ -148,21 +137,21 @@ fn main(
             Some(Parameter { key, ..other.main })
         };
         let others: Vec<_> = others.filter_map(parameter).collect();
-        return quantities::read(spectra, path, node, own.main.quantity, &others);
+        return quantities::read(spectra, item, own.main.quantity, &others);
     };
     let keys = others.flat_map(|other| {
         let keys = quantities::keys(other.main.quantity).iter().copied();
         keys.chain(other.within)
     });
     let keys: Vec<&str> = keys.collect();
-    let fields = Fields::open(spectra.report, path, node, &keys)?;
+    let fields = Fields::open(item, &keys)?;
     for key in keys.iter().filter(|key| **key != within) {
         fields.at_most_one(&[within, *key])?;
     }
     let quantity = own.main.quantity;
     let expected = format!("{within} = {}", quantities::form(quantity));
-    fields.required(within, &expected, |path, node| {
-        quantities::read(spectra, path, node, quantity, &[])
+    fields.required(within, &expected, |item| {
+        quantities::read(spectra, item, quantity, &[])
     })
 }
 
@@ -185,20 +174,16 @@ fn lonely(fields: &Fields<'_>, kind: Option<&str>) -> Option<()> {
 }
 
 fn emission(spectra: &Spectra<'_>, fields: &Fields<'_>) -> Option<Option<Emission>> {
-    let sides = fields.optional("sides", Sides::Front, |what, node| {
-        spectra
-            .report
-            .choice(what, node, &Sides::ALL, |sides| sides.name())
+    let sides = fields.optional("sides", Sides::Front, |item| {
+        item.choice(&Sides::ALL, Sides::name)
     });
     if let (None, Some(entry)) = (fields.get("emit"), fields.table.entry("sides")) {
         let message = format!("{} without emit", fields.path("sides"));
-        let names = one_of(&Sides::ALL.map(|sides| sides.name()));
+        let names = one_of(&Sides::ALL.map(Sides::name));
         let expected = format!("emit = spectrum besides sides = {names}");
         return spectra.report.fail(entry.key_place, message, expected);
     }
-    let radiance = fields.optional("emit", None, |what, node| {
-        spectra.spectrum(what, node, Role::Emission).map(Some)
-    });
+    let radiance = fields.maybe("emit", |item| spectra.spectrum(&item, Role::Emission));
     let (radiance, sides) = (radiance?, sides?);
     Some(radiance.map(|radiance| Emission { radiance, sides }))
 }

@@ -169,6 +169,8 @@ pub enum PrecisionChoice {
 }
 
 impl PrecisionChoice {
+    pub(crate) const ALL: [Self; 3] = [Self::Auto, Self::F32, Self::F64];
+
     /// Its name in scene files.
     pub fn name(self) -> &'static str {
         match self {

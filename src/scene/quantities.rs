@@ -1,9 +1,9 @@
 //! Reading the values of declared parameters.
 
-use super::fields::{Fields, every};
+use super::fields::{Fields, Item, every};
 use super::index;
 use super::spectra::Spectra;
-use super::tree::{Node, Value as Written};
+use super::tree::Value as Written;
 use crate::declare::{Parameter, Quantity, Usual, Value};
 use crate::spectrum::Spectrum;
 use crate::spectrum::ior::RefractiveIndex;
@@ -33,70 +33,57 @@ pub(super) fn keys(quantity: Quantity) -> &'static [&'static str] {
 /// Reads a value. `others` are what its key may hold in its place: a table with one of these.
 pub(super) fn read(
     spectra: &Spectra<'_>,
-    path: &str,
-    node: &Node,
+    item: Item<'_>,
     quantity: Quantity,
     others: &[Parameter],
 ) -> Option<Vec<Value>> {
-    let report = spectra.report;
-    match quantity {
-        Quantity::True => match node.value {
-            Written::Bool(true) => Some(Vec::new()),
-            _ => report.fail(node.place, format!("{path} is not true"), "true"),
-        },
+    let value = match quantity {
+        Quantity::True => {
+            return match item.node.value {
+                Written::Bool(true) => Some(Vec::new()),
+                _ => item.fail(format!("{} is not true", item.path), "true"),
+            };
+        }
         Quantity::Number { unit, range } => {
-            let allowed = |number| range.contains(number);
             let expected = match unit {
                 "" => range.words(),
                 unit => format!("{}, {unit}", range.words()),
             };
-            let number = report.number_that(path, node, &expected, allowed)?;
-            Some(vec![Value::Number(number)])
+            let allowed = |number| range.contains(number);
+            Value::Number(item.number_that(&expected, allowed)?)
         }
-        Quantity::Spectrum(role) => {
-            let spectrum = spectra.spectrum(path, node, role)?;
-            Some(vec![Value::Spectrum(spectrum)])
-        }
+        Quantity::Spectrum(role) => Value::Spectrum(spectra.spectrum(&item, role)?),
         Quantity::TwoSpectra(role) => {
-            let expected = "an array of two spectra";
-            let [first, second] = report.array(path, node, expected)?;
-            let first = spectra.spectrum(&format!("{path}[0]"), first, role);
-            let second = spectra.spectrum(&format!("{path}[1]"), second, role);
-            Some(vec![Value::Spectrum(first?), Value::Spectrum(second?)])
+            let both = item.array::<2>("an array of two spectra")?;
+            let [first, second] = both.map(|one| spectra.spectrum(&one, role));
+            return Some(vec![Value::Spectrum(first?), Value::Spectrum(second?)]);
         }
-        Quantity::Metal => Some(vec![Value::Index(metal(spectra, path, node, others)?)]),
-        Quantity::Glass => Some(vec![Value::Index(index::glass(spectra, path, node)?)]),
-        Quantity::Point => Some(vec![Value::Point(report.vector(path, node)?)]),
-        Quantity::Direction => Some(vec![Value::Direction(report.direction(path, node)?)]),
+        Quantity::Metal => Value::Index(metal(spectra, item, others)?),
+        Quantity::Glass => Value::Index(index::glass(item)?),
+        Quantity::Point => Value::Point(item.vector()?),
+        Quantity::Direction => Value::Direction(item.direction()?),
         Quantity::Table(parameters) => {
             let keys: Vec<&str> = parameters.iter().map(|own| own.key).collect();
-            let fields = Fields::open(report, path, node, &keys)?;
-            all(spectra, &fields, parameters)
+            return all(spectra, &Fields::open(item, &keys)?, parameters);
         }
-    }
+    };
+    Some(vec![value])
 }
 
-fn metal(
-    spectra: &Spectra<'_>,
-    path: &str,
-    node: &Node,
-    others: &[Parameter],
-) -> Option<RefractiveIndex> {
-    match &node.value {
-        Written::Text(name) => index::metal(spectra, path, node, name),
+fn metal(spectra: &Spectra<'_>, item: Item<'_>, others: &[Parameter]) -> Option<RefractiveIndex> {
+    match &item.node.value {
+        Written::Text(name) => index::metal(&item, name),
         Written::Table(_) => {
             let keys = index::METAL_KEYS.into_iter();
             let keys: Vec<_> = keys.chain(others.iter().map(|own| own.key)).collect();
-            let fields = Fields::open(spectra.report, path, node, &keys)?;
-            index::complex(spectra, &fields)
+            index::complex(spectra, &Fields::open(item, &keys)?)
         }
         _ => {
             let table = |own: &Parameter| format!("{{ {} = {} }}", own.key, form(own.quantity));
             let mut forms: Vec<String> = index::METAL.map(str::to_owned).into();
             forms.extend(others.iter().map(table));
             let last = forms.pop().unwrap_or_default();
-            let expected = format!("{} or {last}", forms.join(", "));
-            spectra.report.wrong_type(path, node, &expected)
+            item.wrong_type(format!("{} or {last}", forms.join(", ")))
         }
     }
 }
@@ -118,7 +105,7 @@ pub(super) fn all<'p>(
     parameters: impl IntoIterator<Item = &'p Parameter>,
 ) -> Option<Vec<Value>> {
     let values = parameters.into_iter().map(|own| {
-        let read = |path: &str, node: &Node| read(spectra, path, node, own.quantity, &[]);
+        let read = |item| read(spectra, item, own.quantity, &[]);
         match own.default {
             None => fields.required(own.key, &assigned(own), read),
             Some(usual) => fields.optional(own.key, meant(own.quantity, usual), read),
