@@ -1,4 +1,4 @@
-//! From the merged tree to the parts of a scene.
+//! From the merged tree to a scene.
 
 use std::path::Path;
 
@@ -9,28 +9,11 @@ use super::implicit::DefaultFinder;
 use super::spectra::{self, Spectra};
 use super::tree::{Place, Table};
 use super::{
-    Camera, FinderChoice, Image, Light, Material, Named, Object, PrecisionChoice, Projection,
-    ProjectionKind, SamplerKind, materials, objects, quantities,
+    Camera, FinderChoice, Image, Light, PrecisionChoice, Projection, ProjectionKind, SamplerKind,
+    Scene, Source, materials, objects, quantities,
 };
 use crate::declare::Role;
 use crate::light::SourceKind;
-use crate::spectrum::Spectrum;
-
-/// What panels can change.
-pub(super) struct Look {
-    pub camera: Camera,
-    pub image: Image,
-    pub materials: Vec<Named<Material>>,
-    pub environment: Option<Spectrum>,
-    pub truth: Option<Spectrum>,
-}
-
-/// A scene but for its source.
-pub(super) struct Parts {
-    pub look: Look,
-    pub objects: Vec<Named<Object>>,
-    pub lights: Vec<Light>,
-}
 
 const TOP_KEYS: &[&str] = &[
     "title",
@@ -60,7 +43,13 @@ pub(super) const IMAGE_KEYS: &[&str] = &[
 ];
 
 /// Reads the whole tree; `None` only if the report has a complaint.
-pub(super) fn scene(report: &Report, base_dir: &Path, root: &Table) -> Option<Parts> {
+pub(super) fn scene(
+    report: &Report,
+    base_dir: &Path,
+    root: &Table,
+    source: Source,
+    panel: Option<String>,
+) -> Option<Scene> {
     // What is missing from the file as a whole is missing at its end.
     let end = Place::new(0, usize::MAX..usize::MAX);
     let top = Fields::of(report, String::new(), end, root, TOP_KEYS);
@@ -79,16 +68,16 @@ pub(super) fn scene(report: &Report, base_dir: &Path, root: &Table) -> Option<Pa
     let (image, finder) = image.unwrap_or((None, (FinderChoice::Auto, None)));
     let objects = objects::read(top.item("object"), &materials.names, hidden, &finder);
     let lights = top.optional("light", Vec::new(), |item| lights(&spectra, &item));
-    Some(Parts {
-        look: Look {
-            camera: camera?,
-            image: image?,
-            materials: materials.checked?,
-            environment: environment?,
-            truth: truth?,
-        },
+    Some(Scene {
+        source,
+        panel,
+        camera: camera?,
+        image: image?,
+        materials: materials.checked?,
         objects: objects?,
         lights: lights?,
+        environment: environment?,
+        truth: truth?,
     })
 }
 

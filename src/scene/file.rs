@@ -55,13 +55,8 @@ pub fn read(path: &Path) -> Result<String, SceneError> {
         let at = error.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(error.as_bytes());
         let name = path.display().to_string();
-        let mut diagnostic = Diagnostic::at(
-            Origin::File(name),
-            &text,
-            at,
-            at + 1,
-            "not UTF-8 text".to_owned(),
-        );
+        let message = "not UTF-8 text".to_owned();
+        let mut diagnostic = Diagnostic::at(Origin::File(name), &text, at, at + 1, message);
         diagnostic.expected = Some("a scene file (TOML) in UTF-8".to_owned());
         SceneError::Invalid(Box::new(diagnostic))
     })
@@ -112,13 +107,10 @@ pub fn parse(
     let origins = origins(path_for_messages, text, options);
     let report = Report::default();
     let mut root = parse_tree(&origins, text)?;
-    let settings: Vec<Setting> = options
-        .set
-        .iter()
-        .enumerate()
-        .filter_map(|(i, (key, value))| Setting::parse(&report, i + 1, key, value))
-        .collect();
-    for setting in settings.iter().filter(|s| s.is_for_panels()) {
+    let set = options.set.iter().enumerate();
+    let settings = set.filter_map(|(i, (key, value))| Setting::parse(&report, i + 1, key, value));
+    let (for_panels, settings): (Vec<_>, Vec<_>) = settings.partition(Setting::is_for_panels);
+    for setting in for_panels {
         setting.apply(&report, &mut root);
     }
     let panels = panels(&report, &mut root);
@@ -128,38 +120,27 @@ pub fn parse(
     if let Some(panel) = chosen {
         overlay::merge(&mut asked, &panel.over);
     }
-    for setting in settings.iter().filter(|s| !s.is_for_panels()) {
+    for setting in settings {
         setting.apply(&report, &mut asked);
     }
     if let Some(name) = &options.finder {
         let place = Place::new(origins.texts.len() - 1, 0..name.len());
         overlay::use_finder(&mut asked, place, name);
     }
-    let parts = build::scene(&report, base_dir, &asked);
+    let source = Source {
+        path: path_for_messages.to_owned(),
+        text: text.to_owned(),
+        set: options.set.clone(),
+    };
+    let panel = chosen.map(|panel| panel.name.clone());
+    let scene = build::scene(&report, base_dir, &asked, source, panel);
     if options.set.is_empty() {
         check_others(&report, base_dir, root, &panels, chosen);
     }
-    match (report.first(), parts) {
-        (None, Some(parts)) => Ok(Scene {
-            source: Source {
-                path: path_for_messages.to_owned(),
-                text: text.to_owned(),
-                set: options.set.clone(),
-            },
-            panel: chosen.map(|panel| panel.name.clone()),
-            camera: parts.look.camera,
-            image: parts.look.image,
-            materials: parts.look.materials,
-            objects: parts.objects,
-            lights: parts.lights,
-            environment: parts.look.environment,
-            truth: parts.look.truth,
-        }),
-        (Some(complaint), _) => Err(invalid(&origins, complaint)),
-        (None, None) => {
-            let complaint = Complaint::new(Place::new(0, 0..0), "the file holds no scene", None);
-            Err(invalid(&origins, complaint))
-        }
+    let unread = || Complaint::new(Place::new(0, 0..0), "the file holds no scene", None);
+    match (report.first(), scene) {
+        (None, Some(scene)) => Ok(scene),
+        (complaint, _) => Err(invalid(&origins, complaint.unwrap_or_else(unread))),
     }
 }
 
@@ -171,14 +152,11 @@ pub fn panel_names(path_for_messages: &str, text: &str) -> Result<Vec<String>, S
     let origins = origins(path_for_messages, text, &Overrides::default());
     let report = Report::default();
     let mut root = parse_tree(&origins, text)?;
-    let names = panels(&report, &mut root)
-        .into_iter()
-        .map(|panel| panel.name)
-        .collect();
-    match report.first() {
-        Some(complaint) => Err(invalid(&origins, complaint)),
-        None => Ok(names),
-    }
+    let panels = panels(&report, &mut root).into_iter();
+    let names = panels.map(|panel| panel.name).collect();
+    report
+        .first()
+        .map_or(Ok(names), |complaint| Err(invalid(&origins, complaint)))
 }
 
 /// The file, the settings, the panel, and last the finder.
@@ -310,7 +288,7 @@ fn check_others(
             table.remove("light");
             overlay::merge(&mut table, &panel.over);
         }
-        build::scene(&findings, base_dir, &table);
+        build::scene(&findings, base_dir, &table, Source::default(), None);
         report.absorb(findings, |c| variant.is_some() || !c.missing);
     }
 }

@@ -58,7 +58,7 @@ pub struct Scene {
 }
 
 /// The scene file's path and its own text, and what was laid over it, for messages and provenance.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Source {
     /// The path as it was given.
     pub path: String,
