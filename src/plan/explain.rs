@@ -6,12 +6,10 @@ use super::bounds::{Blur, GAP_SHARE, PIXEL_SHARE};
 use super::choose::Precision;
 use super::{Plan, of_model};
 use crate::film::pixels::Pixels;
-use crate::integrate::model::Model;
 use crate::integrate::needs::Needs;
 use crate::math::lanes::Scalar;
 use crate::sample::replicates::Replicates;
-use crate::scene::{Object, Scene, Shape};
-use crate::shape::lanes::implicit::LaneImplicit;
+use crate::scene::{Lens, Object, Scene, Shape};
 
 /// As many names as a line lists.
 const LISTED: usize = 6;
@@ -40,10 +38,9 @@ fn picture(scene: &Scene) -> String {
     let image = &scene.image;
     let panel = scene.panel.as_ref();
     let panel = panel.map_or_else(String::new, |name| format!(", panel {name}"));
-    format!(
-        "{}{panel}: {} × {} pixels, {} camera paths each",
-        scene.source.path, image.size[0], image.size[1], image.spp
-    )
+    let ([width, height], spp) = (image.size, image.spp);
+    let path = &scene.source.path;
+    format!("{path}{panel}: {width} × {height} pixels, {spp} camera paths each")
 }
 
 /// How often each word occurs, the words in alphabetical order.
@@ -85,11 +82,10 @@ fn shape_kind(object: &Object) -> String {
 }
 
 fn camera(scene: &Scene, needs: Needs) -> String {
-    match (&scene.camera.lens, needs.lens) {
-        (Some(lens), _) => format!(
-            "camera: a lens of radius {}, sharp at distance {}",
-            lens.radius, lens.focus
-        ),
+    match (scene.camera.lens, needs.lens) {
+        (Some(Lens { radius, focus }), _) => {
+            format!("camera: a lens of radius {radius}, sharp at distance {focus}")
+        }
         (None, true) => "camera: no lens, yet its numbers are drawn".to_owned(),
         (None, false) => "camera: no lens, whose two numbers are not drawn".to_owned(),
     }
@@ -103,18 +99,16 @@ struct Sampled {
     probability: f64,
 }
 
-fn sampled<T: Scalar>(model: &Model<T>) -> Vec<Sampled> {
-    let lights = model.lights.iter().map(|light| Sampled {
-        object: light.object,
-        kind: light.shape.name(),
-        how: light.shape.strategy(),
-        probability: light.probability.to_f64(),
-    });
-    lights.collect()
-}
-
 fn lights(scene: &Scene, plan: &Plan) -> Vec<String> {
-    let sampled = of_model!(&plan.tables, model => sampled(model));
+    let sampled: Vec<Sampled> = of_model!(&plan.tables, model => {
+        let lights = model.lights.iter().map(|light| Sampled {
+            object: light.object,
+            kind: light.shape.name(),
+            how: light.shape.strategy(),
+            probability: light.probability.to_f64(),
+        });
+        lights.collect()
+    });
     let mut by_strategy = BTreeMap::<&str, Vec<String>>::new();
     for light in &sampled {
         let object = scene.objects.get(light.object as usize);
@@ -123,8 +117,8 @@ fn lights(scene: &Scene, plan: &Plan) -> Vec<String> {
         let names = by_strategy.entry(light.how).or_default();
         names.push(format!("{name} ({share:.0} %)"));
     }
-    let mut lines: Vec<String> = by_strategy
-        .iter()
+    let lines = by_strategy.iter();
+    let mut lines: Vec<String> = lines
         .map(|(how, names)| format!("lights sampled {how}: {}", listed(names)))
         .collect();
     let found = found_only(scene, &sampled);
@@ -276,7 +270,10 @@ fn intersection(scene: &Scene, plan: &Plan) -> String {
             "; shadow rays ask {occluders}, as the others can hide no light"
         ));
     }
-    let finders = of_model!(&plan.tables, model => finders(&model.implicits));
+    let finders: Vec<&str> = of_model!(&plan.tables, model => {
+        let implicits = model.implicits.iter();
+        implicits.map(|(_, implicit)| implicit.finder().name()).collect()
+    });
     for (name, how) in FINDERS {
         let count = finders.iter().filter(|finder| **finder == name).count();
         if count > 0 {
@@ -303,12 +300,6 @@ const FINDERS: [(&str, &str); 4] = [
     ("sign-change", "equal steps and bisection, not certified"),
 ];
 
-/// The finder of each implicit surface.
-fn finders<T: Scalar>(implicits: &[(u32, LaneImplicit<T>)]) -> Vec<&'static str> {
-    let name = |(_, implicit): &(u32, LaneImplicit<T>)| implicit.finder().name();
-    implicits.iter().map(name).collect()
-}
-
 fn sampler(scene: &Scene, plan: &Plan) -> String {
     let name = scene.image.sampler.words();
     let replicates = plan.choices.replicates;
@@ -326,12 +317,10 @@ fn sampler(scene: &Scene, plan: &Plan) -> String {
 }
 
 fn depth(scene: &Scene) -> String {
-    match scene.image.max_depth {
-        Some(depth) => {
-            format!("paths: at most {depth} segments; some go on to measure what that cuts off")
-        }
-        None => "paths: of any length; Russian roulette ends them without bias".to_owned(),
-    }
+    scene.image.max_depth.map_or_else(
+        || "paths: of any length; Russian roulette ends them without bias".to_owned(),
+        |n| format!("paths: at most {n} segments; some go on to measure what that cuts off"),
+    )
 }
 
 fn memory(scene: &Scene, plan: &Plan) -> String {
@@ -339,10 +328,6 @@ fn memory(scene: &Scene, plan: &Plan) -> String {
     let pixel = Pixels::bytes_per_pixel(plan.choices.replicates, scene.image.spp);
     let sums = width * height * pixel as u64;
     let spectra = of_model!(&plan.tables, model => model.spectra.bytes());
-    let mebibytes = |bytes: f64| bytes / f64::from(1 << 20);
-    format!(
-        "memory: {:.1} MiB of sums, {:.1} MiB of spectra",
-        mebibytes(sums as f64),
-        mebibytes(spectra as f64)
-    )
+    let [sums, spectra] = [sums as f64, spectra as f64].map(|bytes| bytes / f64::from(1 << 20));
+    format!("memory: {sums:.1} MiB of sums, {spectra:.1} MiB of spectra")
 }
