@@ -56,16 +56,13 @@ impl Range {
 
     /// What a message expects.
     pub fn words(&self) -> String {
-        let low = match self.low {
-            Bound::Included(low) => Some(format!("of at least {low}")),
-            Bound::Excluded(low) => Some(format!("greater than {low}")),
+        let end = |bound, included, excluded| match bound {
+            Bound::Included(end) => Some(format!("{included} {end}")),
+            Bound::Excluded(end) => Some(format!("{excluded} {end}")),
             Bound::Unbounded => None,
         };
-        let high = match self.high {
-            Bound::Included(high) => Some(format!("of at most {high}")),
-            Bound::Excluded(high) => Some(format!("less than {high}")),
-            Bound::Unbounded => None,
-        };
+        let low = end(self.low, "of at least", "greater than");
+        let high = end(self.high, "of at most", "less than");
         let ends: Vec<String> = low.into_iter().chain(high).collect();
         if ends.is_empty() {
             "a finite number".to_owned()

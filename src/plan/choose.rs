@@ -1,4 +1,4 @@
-//! From a scene and the user's wishes to decisions, in one table.
+//! What is built for a scene: precision, wavelengths, replicates.
 
 use super::PlanError;
 use super::bounds::Blur;

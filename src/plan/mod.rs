@@ -1,8 +1,8 @@
 //! The plan: what this scene needs, decided once, built once, and explained in words.
 //!
-//! [`choose`] turns what [`contents`] and [`bounds`] say of the scene, and the user's wishes, into
-//! decisions, in one table; [`build`] makes the flat tables of the loop, and with them the list of what
-//! can happen there; [`explain`] says why.
+//! [`choose`] decides by what [`contents`] and [`bounds`] find in the scene and by what the user asks
+//! for; [`build`] makes the flat tables of the loop, and with them the list of what can happen there;
+//! [`explain`] says why.
 
 pub mod bounds;
 pub mod build;

@@ -113,17 +113,10 @@ impl Diagnostic {
         let line_end = text[start..].find('\n').map_or(text.len(), |i| start + i);
         let column = text[line_start..start].chars().count();
         let width = text[start..end.min(line_end)].trim_end().chars().count();
-        let skipped = if column > EXCERPT - LEAD {
-            column - LEAD
-        } else {
-            0
-        };
-        let excerpt: String = text[line_start..line_end]
-            .chars()
-            .skip(skipped)
-            .take(EXCERPT)
-            .map(printable)
-            .collect();
+        let is_cut = column > EXCERPT - LEAD;
+        let skipped = if is_cut { column - LEAD } else { 0 };
+        let line = text[line_start..line_end].chars().skip(skipped);
+        let excerpt: String = line.take(EXCERPT).map(printable).collect();
         let indent = column - skipped;
         Self {
             message,
@@ -159,21 +152,20 @@ fn floor_boundary(text: &str, index: usize) -> usize {
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let number = self.line.to_string();
-        let gutter = " ".repeat(number.len());
-        writeln!(f, "{}", self.message)?;
-        writeln!(
-            f,
-            "{gutter}--> {}:{}:{}",
-            self.origin, self.line, self.column
-        )?;
-        writeln!(f, "{gutter} |")?;
-        writeln!(f, "{number} | {}", self.excerpt)?;
+        let Self {
+            message,
+            origin,
+            line,
+            column,
+            excerpt,
+            ..
+        } = self;
+        let gutter = " ".repeat(line.to_string().len());
+        let (blank, marks) = (" ".repeat(self.indent), "^".repeat(self.width));
+        writeln!(f, "{message}\n{gutter}--> {origin}:{line}:{column}")?;
         write!(
             f,
-            "{gutter} | {}{}",
-            " ".repeat(self.indent),
-            "^".repeat(self.width)
+            "{gutter} |\n{line} | {excerpt}\n{gutter} | {blank}{marks}"
         )?;
         if let Some(expected) = &self.expected {
             write!(f, "\n{gutter} = expected: {expected}")?;

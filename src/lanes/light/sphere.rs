@@ -34,25 +34,13 @@ pub struct Spheres<L: Lanes> {
 }
 
 /// A few spheres by number, to be looked up lane by lane.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct SphereTable<T> {
     centre: [[T; SMALL]; 3],
     radius: [T; SMALL],
     inside_squared: [T; SMALL],
     /// Whether front and back emit, as bits.
     emits: [u32; SMALL],
-}
-
-impl<T: Scalar> Default for SphereTable<T> {
-    fn default() -> Self {
-        let zeros = [T::default(); SMALL];
-        Self {
-            centre: [zeros; 3],
-            radius: zeros,
-            inside_squared: zeros,
-            emits: [0; SMALL],
-        }
-    }
 }
 
 impl<T: Scalar> SphereTable<T> {
