@@ -3,10 +3,10 @@
 use std::fmt;
 use std::path::PathBuf;
 
-/// A scene that cannot be had.
+/// Why there is no scene.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
-    /// The operating system would not hand over the file.
+    /// The operating system refuses to read the file.
     #[error("cannot read {}: {reason}", path.display())]
     Unreadable {
         /// The file asked for.
@@ -20,7 +20,7 @@ pub enum SceneError {
         /// The path asked for.
         path: PathBuf,
     },
-    /// The file has more bytes than any sensible scene.
+    /// The file has more bytes than a scene file may have.
     #[error("{} is larger than {limit} bytes\n  = expected: a scene file of at most {limit} bytes", path.display())]
     TooLarge {
         /// The file asked for.

@@ -63,31 +63,26 @@ pub fn read(path: &Path) -> Result<String, SceneError> {
 }
 
 /// Reads a whole file of bounded size. Devices and pipes have no size to ask for, so the reading
-/// itself is bounded too.
+/// itself is bounded.
 pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, SceneError> {
     let unreadable = |reason| SceneError::Unreadable {
         path: path.to_owned(),
         reason,
     };
-    let too_large = || SceneError::TooLarge {
-        path: path.to_owned(),
-        limit: LARGEST_FILE,
-    };
-    let metadata = fs::metadata(path).map_err(unreadable)?;
-    if metadata.is_dir() {
+    if fs::metadata(path).map_err(unreadable)?.is_dir() {
         return Err(SceneError::Directory {
             path: path.to_owned(),
         });
-    }
-    if metadata.len() > LARGEST_FILE {
-        return Err(too_large());
     }
     let mut bytes = Vec::new();
     fs::File::open(path)
         .and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes))
         .map_err(unreadable)?;
     if bytes.len() as u64 > LARGEST_FILE {
-        return Err(too_large());
+        return Err(SceneError::TooLarge {
+            path: path.to_owned(),
+            limit: LARGEST_FILE,
+        });
     }
     Ok(bytes)
 }

@@ -204,29 +204,16 @@ fn complain<T>(item: &Item<'_>, text: &str, error: &ExpressionError) -> Option<T
 /// ends keep its bytes from being those of the origin.
 fn inner(node: &Node, text: &str, span: &Range<usize>) -> Place {
     let written = node.written.as_deref().unwrap_or("");
-    let openings = [
-        "\"\"\"\r\n",
-        "'''\r\n",
-        "\"\"\"\n",
-        "'''\n",
-        "\"\"\"",
-        "'''",
-        "\"",
-        "'",
-        "",
-    ];
-    let same = |opening: &&str| {
-        let rest = written.strip_prefix(*opening);
-        let closing = opening.trim_end();
-        rest.and_then(|rest| rest.strip_suffix(closing)) == Some(text)
-    };
-    match openings.into_iter().find(same) {
-        Some(opening) => {
-            let start = node.place.start + opening.len();
-            Place::new(node.place.origin, start + span.start..start + span.end)
-        }
-        None => node.place,
+    // No quotes about a bare word, else one or three on each side, and perhaps a line end after three.
+    let around = written.len().saturating_sub(text.len());
+    let closing = if around < 6 { around / 2 } else { 3 };
+    let opening = around - closing;
+    let same = written.get(opening..opening + text.len()) == Some(text);
+    if !same || !matches!(around, 0 | 2 | 6..=8) {
+        return node.place;
     }
+    let start = node.place.start + opening;
+    Place::new(node.place.origin, start + span.start..start + span.end)
 }
 
 fn clip_box(item: &Item<'_>) -> Option<[DVec3; 2]> {

@@ -13,7 +13,7 @@ use crate::spectrum::Spectrum;
 /// A placed shape that emits.
 pub struct Emitting<'a> {
     pub form: Emitter,
-    /// Canonical coordinates → world, and the inverse.
+    /// Canonical coordinates → world about the camera, and the inverse.
     pub to_world: &'a Affine,
     pub inverse: &'a Affine,
     /// Whether its front and its back emit.
