@@ -320,8 +320,8 @@ const START: f64 = 8.0;
 /// Step of the probabilities of lights: that of uniform numbers in single precision, 2⁻²⁴.
 const PROBABILITY_STEP: f64 = 1.0 / (1 << 24) as f64;
 
-/// How much a spectrum counts when lights are chosen: its luminance, and a little of its plain
-/// mean so that light outside of the visible is still sampled.
+/// How much a spectrum counts when lights are chosen: its luminance, and a little of its largest value
+/// so that light outside of the visible is still sampled.
 fn strength(spectrum: &Spectrum) -> f64 {
     spectrum_to_xyz(spectrum)[1] + 1e-3 * spectrum.max_value()
 }

@@ -14,7 +14,7 @@ use crate::scene::{Lens, Object, Scene, Shape};
 /// As many names as a line lists.
 const LISTED: usize = 6;
 
-/// What the scene holds, what it needs and what is done about it, line by line.
+/// What the scene holds, what the loop needs for it, and what was chosen and why, line by line.
 pub fn explain(scene: &Scene, plan: &Plan) -> Vec<String> {
     let mut lines = vec![picture(scene), objects(scene), camera(scene, plan.needs())];
     lines.extend(lights(scene, plan));
@@ -91,7 +91,7 @@ fn camera(scene: &Scene, needs: Needs) -> String {
     }
 }
 
-/// A light of the tables: its object, how it is sampled, and how often.
+/// A sampled light: its object if it has one, what it is called else, how it is sampled, and how often.
 struct Sampled {
     object: u32,
     kind: &'static str,

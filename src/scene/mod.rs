@@ -157,7 +157,7 @@ pub struct Image {
     pub wavelengths: Option<u32>,
 }
 
-/// What the user says about precision.
+/// The precision that a scene asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PrecisionChoice {
     /// Single where the plan can show that it suffices, else double.

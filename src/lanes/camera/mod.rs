@@ -69,7 +69,8 @@ impl Camera {
     )
     .usually(Usual::Nothing);
 
-    /// From the values of [`Self::VIEW`] and [`Self::LENS`]; a lens of radius 0 is a pinhole.
+    /// A camera of the values of [`Self::VIEW`] and [`Self::LENS`], in this order; a lens of radius 0 is
+    /// a pinhole.
     pub fn new(values: &[Value], projection: Projection) -> Option<Self> {
         let vectors: Vec<DVec3> = values.iter().filter_map(Value::vector).collect();
         let numbers: Vec<f64> = values.iter().filter_map(Value::number).collect();

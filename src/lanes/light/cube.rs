@@ -1,4 +1,4 @@
-//! Lights in the shape of a cube under any affine map.
+//! Parallelepipeds: cubes under any affine map.
 
 use glam::DVec3;
 

@@ -1,4 +1,4 @@
-//! Lights in the shape of a right circular cylinder with caps.
+//! Right circular cylinders with caps.
 
 use std::f64::consts::PI;
 
@@ -11,9 +11,9 @@ use crate::math::vec3::Vec3;
 use crate::sample::warp::square_to_disk;
 use crate::shape::Emitter;
 
-/// A right circular cylinder. A part that faces the receiver is chosen by its size; on caps and from inside points are chosen
-/// by area, on the side from outside by height and by how far their line of sight passes the axis,
-/// so that the density is bounded at the outline.
+/// A right circular cylinder. A part that faces the receiver is chosen by its size; on caps and from
+/// inside points are chosen by area, on the side from outside by height and by how far their line of
+/// sight passes the axis, so that the density is bounded at the outline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CylinderLight<T> {
     centre: [T; 3],
@@ -37,7 +37,7 @@ struct View<L: Lanes> {
     total: L::Real,
 }
 
-/// A part, as masks: side, and of the caps that towards +z.
+/// A part of the surface: the side, else the cap towards +z (`top`) or the one towards −z.
 pub(super) struct Part<L: Lanes> {
     side: L::Mask,
     top: L::Mask,

@@ -1,8 +1,8 @@
 //! How far off positions may be, and what that must be small against.
 //!
 //! `positions` bounds the error of a hit, `shadows` that of a hard shadow's edge, `pixels` finds how near
-//! the pixels are that see it, and [`gaps`] finds the smallest distance between two objects. Each is an extreme over all
-//! objects by itself, so that another object can only make it worse.
+//! the camera an object is seen, and [`gaps`] finds the smallest distance between two objects. Each is an
+//! extreme over all objects by itself, so that another object can only make it worse.
 
 mod faces;
 pub mod gaps;
@@ -42,7 +42,7 @@ pub struct Blur {
 }
 
 impl Blur {
-    /// In arithmetic of unit roundoff `roundoff`.
+    /// Bounds for a scene in arithmetic of this unit roundoff.
     pub fn new(scene: &Scene, roundoff: f64) -> Self {
         let sites = sites(scene);
         let start = start(scene);
