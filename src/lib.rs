@@ -167,12 +167,12 @@
 //! planted → math
 //! material → declare, planted, sample, spectrum, math
 //! shape → field, root, math
-//! camera → sample, math
-//! light → shape, sample, math
+//! camera → declare, sample, math
+//! light → declare, shape, sample, spectrum, math
 //! integrate → camera, light, material, planted, shape, sample, spectrum, math
 //! stats →
 //! film → sample, spectrum, math
-//! scene → camera, declare, field, material, shape, sample, spectrum, math
+//! scene → camera, declare, field, light, material, shape, sample, spectrum, math
 //! plan → scene, integrate, film, camera, declare, light, material, shape, sample, spectrum, math
 //! render → plan, scene, integrate, film, camera, shape, sample, spectrum, stats, math
 //! compare → scene, film, spectrum, stats

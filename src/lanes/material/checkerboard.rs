@@ -10,22 +10,16 @@ use crate::math::lanes::Real;
 pub struct Checkerboard;
 
 impl Material for Checkerboard {
-    const DECLARATION: Declaration = Declaration {
-        beside: &[Parameter {
-            key: "cell",
-            what: "edge of a cell",
-            quantity: Quantity::Number {
-                unit: "object coordinates",
-                range: Range::POSITIVE,
-            },
-            default: None,
-        }],
-        ..Declaration::new(
-            "checkerboard",
-            "albedos",
-            Quantity::TwoSpectra(Role::Reflectance),
-        )
-    };
+    const DECLARATION: Declaration = Declaration::new(
+        "checkerboard",
+        "albedos",
+        Quantity::TwoSpectra(Role::Reflectance),
+    )
+    .beside(&[Parameter::new(
+        "cell",
+        "edge of a cell",
+        Quantity::number("object coordinates", Range::POSITIVE),
+    )]);
     const WORDS: &'static str = "checkerboard";
     const TEXTURE_OF: Option<MaterialKind> = Some(MaterialKind::Diffuse);
     const SPREAD: bool = true;

@@ -53,10 +53,7 @@ impl Surface {
 
     /// Its spectra, other than refractive indices.
     pub fn spectra(&self) -> impl Iterator<Item = &Spectrum> {
-        self.values.iter().filter_map(|value| match value {
-            Value::Spectrum(spectrum) => Some(spectrum),
-            Value::Number(_) | Value::Index(_) => None,
-        })
+        self.values.iter().filter_map(Value::spectrum)
     }
 
     /// Its record, on an object of this size over its canonical shape. `place` puts a value's spectra
@@ -71,11 +68,7 @@ impl Surface {
         for (spectrum, start) in spectra.iter_mut().zip(starts) {
             *spectrum = start;
         }
-        let numbers = self.values.iter().filter_map(|value| match value {
-            Value::Number(number) => Some(*number),
-            Value::Spectrum(_) | Value::Index(_) => None,
-        });
-        let numbers: Vec<f64> = numbers.collect();
+        let numbers: Vec<f64> = self.values.iter().filter_map(Value::number).collect();
         let texture_of = self.kind.texture_of();
         Record {
             kind: texture_of.unwrap_or(self.kind),
