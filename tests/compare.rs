@@ -1,12 +1,6 @@
 //! `etalon compare` from outside, on pictures whose noise is known.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a failed unwrap is a failed test, and says where"
-)]
-
 use std::path::Path;
-use std::process::{Command, Output};
 
 use etalon::inside::compare::{LEVEL, flip, judge};
 use etalon::inside::film::provenance::hash;
@@ -17,7 +11,9 @@ use etalon::{Attribute, Channel, Picture, Side};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::Value;
-use tempfile::TempDir;
+
+use crate::support::{Folder, Said, assert_says};
+use crate::truth_file::{list, number};
 
 /// Edge of the pictures, pixels.
 const EDGE: usize = 32;
@@ -110,50 +106,37 @@ fn text(text: &str) -> Attribute {
     Attribute::Text(text.to_owned())
 }
 
-/// Runs the command on two pictures in a directory of their own.
-fn compare(a: &Picture, b: Option<&Picture>, arguments: &[&str]) -> (Output, TempDir) {
-    let directory = tempfile::tempdir().unwrap();
-    exr::write(&directory.path().join("a.exr"), a).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_etalon"));
-    command
-        .current_dir(directory.path())
-        .args(["compare", "a.exr"]);
+/// Runs the command on two pictures in a folder with a scene file.
+fn compare(a: &Picture, b: Option<&Picture>, arguments: &[&str]) -> (Said, Folder) {
+    let folder = Folder::new(SCENE);
+    let mut all = vec!["compare", "a.exr"];
+    exr::write(&folder.path("a.exr"), a).unwrap();
     if let Some(b) = b {
-        exr::write(&directory.path().join("b.exr"), b).unwrap();
-        command.arg("b.exr");
+        all.push("b.exr");
+        exr::write(&folder.path("b.exr"), b).unwrap();
     }
-    (command.args(arguments).output().unwrap(), directory)
+    all.extend(arguments);
+    (folder.run(&all), folder)
 }
 
+const SCENE: &str = "[camera]\n# another text\n";
+
+/// The exit code, and words of the answer or the message.
 #[track_caller]
-fn expect(output: &Output, code: i32, words: &[&str]) {
-    let said = format!(
-        "{}{}",
-        String::from_utf8_lossy(&output.stdout),
-        String::from_utf8_lossy(&output.stderr)
-    );
-    assert_eq!(output.status.code(), Some(code), "{said}");
-    for words in words {
-        assert!(said.contains(words), "{words:?} is not in {said}");
-    }
+fn expect(a: &Picture, b: &Picture, code: i32, words: &[&str]) {
+    let (said, _) = compare(a, Some(b), &[]);
+    assert_eq!(said.code, Some(code), "{said:?}");
+    assert_says(&(said.out + &said.err), words);
 }
 
 #[test]
 fn honest_pictures_are_consistent() {
-    let a = HONEST.picture(false);
     let b = HONEST.seed(2).picture(true);
-    let (output, directory) = compare(&a, Some(&b), &["--heatmap", "difference.png"]);
-    expect(
-        &output,
-        0,
-        &[
-            "\nconsistent",
-            "caught from a bias of",
-            "relMSE",
-            "heat map",
-        ],
-    );
-    assert!(directory.path().join("difference.png").exists());
+    let (said, folder) = compare(&HONEST.picture(false), Some(&b), &["--heatmap", "map.png"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let caught = "caught from a bias of";
+    assert_says(&said.out, &["\nconsistent", caught, "relMSE", "heat map"]);
+    assert!(folder.path("map.png").exists());
 }
 
 /// 2 % in the mean are eleven of its standard errors here, 5 % in one block are eight.
@@ -164,18 +147,14 @@ fn a_bias_of_all_or_of_a_block_is_seen() {
         factor: 1.02,
         ..HONEST
     };
-    let (output, _directory) = compare(&all.picture(false), Some(&b), &[]);
-    expect(
-        &output,
-        1,
-        &["NOT consistent", "the image mean is off by +"],
-    );
+    let words = ["NOT consistent", "the image mean is off by +"];
+    expect(&all.picture(false), &b, 1, &words);
     let block = Drawn {
         block: 0.95,
         ..HONEST
     };
-    let (output, _directory) = compare(&block.picture(false), Some(&b), &[]);
-    expect(&output, 1, &["the block of 8x8 pixels at 0,8 is off by"]);
+    let words = ["the block of 8x8 pixels at 0,8 is off by"];
+    expect(&block.picture(false), &b, 1, &words);
 }
 
 /// Error bars that are too small show in the distribution of the blocks, not in their means.
@@ -229,26 +208,25 @@ fn a_number_can_be_the_truth() {
     let mut a = HONEST.picture(false);
     a.channels
         .retain(|c| c.name == "R" || c.name == "standard_error.R");
-    let (output, _directory) = compare(&a, None, &["--truth", "16.5"]);
-    expect(&output, 0, &["consistent"]);
-    let (output, _directory) = compare(&a, None, &["--truth", "16.6"]);
-    expect(&output, 1, &["NOT consistent"]);
-    let (output, _directory) = compare(&a, None, &[]);
-    expect(&output, 2, &["B.exr"]);
+    for (arguments, code, words) in [
+        (&["--truth", "16.5"][..], 0, "consistent"),
+        (&["--truth", "16.6"], 1, "NOT consistent"),
+        (&[], 2, "B.exr"),
+    ] {
+        let (said, _) = compare(&a, None, arguments);
+        assert_eq!(said.code, Some(code), "{said:?}");
+        assert_says(&(said.out + &said.err), &[words]);
+    }
 }
 
 #[test]
 fn json_holds_everything() {
     let b = HONEST.seed(2).picture(true);
-    let (output, _directory) = compare(&HONEST.picture(false), Some(&b), &["--json"]);
-    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let (said, _) = compare(&HONEST.picture(false), Some(&b), &["--json"]);
+    let json: Value = serde_json::from_str(&said.out).unwrap();
     assert_eq!(json["judgement"]["consistent"], true);
-    let names: Vec<&str> = json["channels"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|c| c["channel"].as_str().unwrap())
-        .collect();
+    let channels = list(&json["channels"]).iter();
+    let names: Vec<&str> = channels.map(|c| c["channel"].as_str().unwrap()).collect();
     assert_eq!(names, ["R", "G", "B", channel_name(450.0).as_str()]);
     let metrics = &json["channels"][0]["metrics"];
     for name in [
@@ -263,10 +241,8 @@ fn json_holds_everything() {
     }
     // Two pictures with a noise of 0.1/√8 each: their relative squared error is 2 · 0.01/8, and the
     // variance of the reference is half of it.
-    let relmse = metrics["relmse"]["value"].as_f64().unwrap();
-    let without = metrics["relmse_without_reference_variance"]["value"]
-        .as_f64()
-        .unwrap();
+    let relmse = number(&metrics["relmse"]["value"]);
+    let without = number(&metrics["relmse_without_reference_variance"]["value"]);
     assert!((relmse / 2.5e-3 - 1.0).abs() < 0.2, "{relmse}");
     assert!((without / 1.25e-3 - 1.0).abs() < 0.3, "{without}");
 }
@@ -275,36 +251,27 @@ fn json_holds_everything() {
 fn what_cannot_be_compared_is_said() {
     let a = HONEST.picture(false);
     let b = HONEST.seed(2).picture(true);
-    let refused = |b: &Picture, words: &[&str]| {
-        let (output, _directory) = compare(&a, Some(b), &[]);
-        expect(&output, 2, words);
+    let refused = |b: &Picture, words: &[&str]| expect(&a, b, 2, words);
+    // One channel of ones, but for a pixel.
+    let ones = |edge: usize, name: &str| {
+        let mut picture = Picture::new(edge, edge);
+        picture
+            .channels
+            .push(Channel::float(name, vec![1.0; edge * edge]));
+        picture
     };
-
-    let mut small = Picture::new(4, 4);
-    small.channels.push(Channel::float("R", vec![1.0; 16]));
-    refused(&small, &["a.exr has 32x32 pixels and b.exr has 4x4"]);
-
-    let mut other = Picture::new(EDGE, EDGE);
-    other
-        .channels
-        .push(Channel::float("depth.Z", vec![1.0; EDGE * EDGE]));
-    refused(&other, &["b.exr has neither R, G, B nor spectral channels"]);
-
-    let mut bands = Picture::new(EDGE, EDGE);
-    let name = channel_name(600.0);
-    bands
-        .channels
-        .push(Channel::float(name, vec![1.0; EDGE * EDGE]));
+    refused(&ones(4, "R"), &["a.exr has 32x32 pixels and b.exr has 4x4"]);
+    let none = "b.exr has neither R, G, B nor spectral channels";
+    refused(&ones(EDGE, "depth.Z"), &[none]);
+    let bands = ones(EDGE, &channel_name(600.0));
     refused(&bands, &["share no channel", "S0.600,000000nm"]);
 
     let mut broken = b.clone();
     let mut values = vec![1.0f32; EDGE * EDGE];
     values[3 * EDGE + 5] = f32::NAN;
     broken.channels[0] = Channel::float("R", values);
-    refused(
-        &broken,
-        &["1 values that are not finite in channel R", "5,3"],
-    );
+    let words = ["1 values that are not finite in channel R", "5,3"];
+    refused(&broken, &words);
 
     let mut bare = b.clone();
     bare.channels.retain(|c| !c.name.starts_with("variance."));
@@ -321,45 +288,22 @@ fn what_cannot_be_compared_is_said() {
 
 #[test]
 fn stale_references_and_other_scenes_are_told() {
-    let scene = "[camera]\n# another text\n";
     let mut a = HONEST.picture(false);
     let mut b = HONEST.seed(2).picture(true);
     let of = |picture: &mut Picture, hash: &str| {
         set(picture, "sceneFile", text("scene.toml"));
         set(picture, "sceneHash", text(hash));
     };
-    let run = |a: &Picture, b: &Picture| {
-        let directory = tempfile::tempdir().unwrap();
-        std::fs::write(directory.path().join("scene.toml"), scene).unwrap();
-        exr::write(&directory.path().join("a.exr"), a).unwrap();
-        exr::write(&directory.path().join("b.exr"), b).unwrap();
-        let mut command = Command::new(env!("CARGO_BIN_EXE_etalon"));
-        command.current_dir(directory.path());
-        command
-            .args(["compare", "a.exr", "b.exr"])
-            .output()
-            .unwrap()
-    };
     of(&mut b, &hash("[camera]\n"));
-    expect(
-        &run(&a, &b),
-        2,
-        &["b.exr is stale", "scene.toml has changed since"],
-    );
-    of(&mut a, &hash(scene));
-    expect(
-        &run(&a, &b),
-        2,
-        &["not of the same scene file", "b.exr is stale"],
-    );
-    of(&mut b, &hash(scene));
-    expect(&run(&a, &b), 0, &["consistent"]);
+    let stale = "b.exr is stale";
+    expect(&a, &b, 2, &[stale, "scene.toml has changed since"]);
+    of(&mut a, &hash(SCENE));
+    expect(&a, &b, 2, &["not of the same scene file", stale]);
+    of(&mut b, &hash(SCENE));
+    expect(&a, &b, 0, &["consistent"]);
     set(&mut b, "panel", text("b"));
-    expect(
-        &run(&a, &b),
-        2,
-        &["a.exr is of panel none and b.exr of panel b"],
-    );
+    let panels = "a.exr is of panel none and b.exr of panel b";
+    expect(&a, &b, 2, &[panels]);
 }
 
 /// Values of the authors' own program, flip-evaluator 1.7 (`evaluate(…, "HDR", applyMagma=False)`), on

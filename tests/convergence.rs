@@ -3,11 +3,6 @@
 //!
 //! The whole module raises a false alarm with probability below [`LEVEL`]; seeds are fixed.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a failed unwrap is a failed test, and says where"
-)]
-
 use std::path::Path;
 
 use etalon::inside::scene::{SamplerKind, load};

@@ -1,8 +1,4 @@
 //! Pictures go to files and come back: bits, attributes, and nothing half-done.
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test that cannot set itself up has failed"
-)]
 
 use std::fs::{self, File};
 use std::io::{self, Write};

@@ -26,7 +26,7 @@ fn metal(precision: Precision, cosine: f64, n: f64, k: f64) -> f64 {
 fn dielectrics_match_the_table() {
     let truth = truth("fresnel_dielectric");
     for precision in PRECISIONS {
-        for index in list(&truth["exact"]["per_index"]) {
+        for index in truth.rows("per_index") {
             let n = number(&index["n"]);
             let rows = list(&index["rows"]);
             let cosines: Vec<f64> = rows
@@ -141,7 +141,7 @@ fn dielectrics_are_sane_at_the_edges() {
 fn conductors_match_the_table() {
     let truth = truth("fresnel_conductor");
     for precision in PRECISIONS {
-        for row in list(&truth["exact"]["rows"]) {
+        for row in truth.rows("rows") {
             let (n, k) = (number(&row["n"]), number(&row["k"]));
             let cosine = libm::cos(number(&row["theta_deg"]).to_radians());
             let got = metal(precision, cosine, n, k);

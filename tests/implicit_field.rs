@@ -1,27 +1,25 @@
 //! Fields of implicit surfaces in f64 and in lanes: values, gradients, and normals where the
 //! gradient vanishes.
 
-use std::sync::Arc;
-
 use etalon::inside::field::bounded;
 use etalon::inside::field::evaluate::{Field, nearest};
 use etalon::inside::field::expression::{Expression, parse};
 use etalon::inside::field::named::{self, SURFACES};
 use etalon::inside::field::normal::outward;
 use etalon::inside::math::affine::Affine;
-use etalon::inside::scene::{FinderChoice, Implicit};
+use etalon::inside::scene::FinderChoice;
 use etalon::inside::shape::implicit::certified::Workspace;
 use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
-use etalon::inside::shape::{Query, Ray};
 use etalon_doors::fields::values_and_gradients;
 use glam::DVec3;
 use num_bigint::BigInt;
 use num_rational::BigRational;
-use num_traits::ToPrimitive;
+use num_traits::{Signed, ToPrimitive};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::{PRECISIONS, Precision, everywhere};
+use crate::support::{from_zero, implicit};
 
 fn expression(text: &str) -> Expression {
     parse(text, &[]).expect(text)
@@ -50,7 +48,7 @@ fn constants_are_rounded_to_nearest() {
         });
         let value = BigRational::new(a, b);
         let rounded = nearest(&value);
-        let off = |x: f64| (exact(x) - &value).abs_value();
+        let off = |x: f64| (exact(x) - &value).abs();
         assert!(off(rounded) <= off(rounded.next_up()), "{value}");
         assert!(off(rounded) <= off(rounded.next_down()), "{value}");
     }
@@ -59,16 +57,6 @@ fn constants_are_rounded_to_nearest() {
         nearest(&exact(f64::MIN_POSITIVE / 8.0)),
         f64::MIN_POSITIVE / 8.0
     );
-}
-
-trait AbsoluteValue {
-    fn abs_value(self) -> Self;
-}
-
-impl AbsoluteValue for BigRational {
-    fn abs_value(self) -> Self {
-        num_traits::Signed::abs(&self)
-    }
 }
 
 /// Automatic differentiation against the exact gradient of the polynomial, within the bound that
@@ -243,27 +231,19 @@ fn the_heart_has_its_normal_where_the_gradient_vanishes() {
 fn normals_are_finite_everywhere() {
     let mut random = Pcg64Mcg::seed_from_u64(6);
     let half = 0.5_f64.sqrt();
+    let heart = "(x^2 + 9/4*y^2 + z^2 - 1)^3 - x^2*z^3 - 9/80*y^2*z^3";
+    let roman = "x^2*y^2 + y^2*z^2 + z^2*x^2 - x*y*z";
+    let square = "(x^2 + y^2 + z^2 - 1)^2";
+    let quartic = "x^4+y^4+z^4-x^2-y^2-z^2-x^2*y^2-y^2*z^2-z^2*x^2+1";
     let cases = [
-        (
-            "(x^2 + 9/4*y^2 + z^2 - 1)^3 - x^2*z^3 - 9/80*y^2*z^3",
-            DVec3::Z,
-        ),
-        (
-            "(x^2 + 9/4*y^2 + z^2 - 1)^3 - x^2*z^3 - 9/80*y^2*z^3",
-            -DVec3::Z,
-        ),
+        (heart, DVec3::Z),
+        (heart, -DVec3::Z),
         ("(x^2 + y^2 + z^2)^2 - 4*(x^2 + y^2)", DVec3::ZERO),
-        (
-            "x^4+y^4+z^4-x^2-y^2-z^2-x^2*y^2-y^2*z^2-z^2*x^2+1",
-            DVec3::ONE,
-        ),
-        (
-            "x^2*y^2 + y^2*z^2 + z^2*x^2 - x*y*z",
-            DVec3::new(0.25, 0.0, 0.0),
-        ),
-        ("x^2*y^2 + y^2*z^2 + z^2*x^2 - x*y*z", DVec3::ZERO),
-        ("(x^2 + y^2 + z^2 - 1)^2", DVec3::new(half, half, 0.0)),
-        ("(x^2 + y^2 + z^2 - 1)^2", DVec3::X),
+        (quartic, DVec3::ONE),
+        (roman, DVec3::new(0.25, 0.0, 0.0)),
+        (roman, DVec3::ZERO),
+        (square, DVec3::new(half, half, 0.0)),
+        (square, DVec3::X),
         ("x^2 + y^2 - z^2", DVec3::ZERO),
         ("x^2 + y^2 + z^2", DVec3::ZERO),
         ("sqrt(x)", DVec3::ZERO),
@@ -303,24 +283,10 @@ fn squares_have_normals_that_face_the_ray() {
 fn closed_surfaces_have_caps() {
     let inside = [-DVec3::ONE, DVec3::ONE];
     let open = expression("x^2 + y^2 - z^2/2 - 1/5");
-    let first = |field: Expression, inside: [DVec3; 2], origin: DVec3| {
-        let implicit = Implicit {
-            name: None,
-            field: Arc::new(field),
-            inside,
-            closed: false,
-            finder: FinderChoice::Auto,
-            steps: 256,
-        };
+    let first = |field: Expression, half: f64, z: f64| {
+        let implicit = implicit(field, half, FinderChoice::Auto);
         let placed = PlacedImplicit::new(&implicit, &Affine::IDENTITY).expect("a regular matrix");
-        let query = Query {
-            ray: Ray {
-                origin,
-                direction: DVec3::NEG_Z,
-            },
-            t_min: 0.0,
-            t_max: f64::INFINITY,
-        };
+        let query = from_zero(DVec3::new(0.1, 0.2, z), DVec3::NEG_Z);
         let (mut workspace, mut tally) = (Workspace::default(), ImplicitTally::default());
         match placed.first_hit(&query, &mut workspace, &mut tally) {
             ImplicitAnswer::Found(hit) => Some((hit.t, hit.normal)),
@@ -328,13 +294,10 @@ fn closed_surfaces_have_caps() {
             ImplicitAnswer::Undecided => panic!("undecided"),
         }
     };
-    let origin = DVec3::new(0.1, 0.2, 5.0);
-    assert_eq!(first(open.clone(), inside, origin), None);
+    assert_eq!(first(open.clone(), 1.0, 5.0), None);
     let capped = open.capped(&inside).expect("finite corners");
-    let room = [inside[0] * 1.125, inside[1] * 1.125];
     for (z, t, up) in [(5.0, 4.0, 1.0), (0.5, 1.5, -1.0)] {
-        let origin = DVec3::new(0.1, 0.2, z);
-        let Some((found, normal)) = first(capped.clone(), room, origin) else {
+        let Some((found, normal)) = first(capped.clone(), 1.125, z) else {
             panic!("the cap is missing");
         };
         assert!((found - t).abs() < 1e-14, "{found}");

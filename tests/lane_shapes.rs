@@ -1,26 +1,21 @@
 //! Soundness of the first rung: what lanes call certain must be what the certified ladder says of
 //! the very same rounded ray, and both crossings must lie within the stated error.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a malformed oracle file must fail the test"
-)]
-
-use std::collections::HashMap;
-
 use etalon::Instructions;
 use etalon::inside::math::affine::Affine;
 use etalon::inside::math::lanes::Scalar;
-use etalon::inside::shape::{Placed, Ray, ShapeKind, Tally};
+use etalon::inside::shape::{Placed, Ray, Tally};
 use etalon_doors::shapes::{RaySpan, spans};
 use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::{PRECISIONS, Precision, on_each, same_bits};
+use crate::oracle_support::{Row, primitives, ray};
 use crate::shape_ladder::{KINDS, critical_point, cubed, decade, matrix};
 
 /// One ray against one shape, in f64.
+#[derive(Clone)]
 struct Case {
     placed: Placed,
     ray: Ray,
@@ -86,10 +81,8 @@ impl Record {
 
     fn check_all(cases: &[Case], precision: Precision) -> Self {
         let mut record = Self::default();
-        for (case, answer) in cases
-            .iter()
-            .zip(ask(Instructions::best(), precision, cases))
-        {
+        let answers = ask(Instructions::best(), precision, cases);
+        for (case, answer) in cases.iter().zip(answers) {
             record.check(case, &answer);
         }
         record
@@ -114,43 +107,12 @@ impl Record {
 
 /// The oracle's rays, with unit directions as the loop has them.
 fn oracle_cases() -> Vec<Case> {
-    let read = |text: &'static str| {
-        csv::ReaderBuilder::new()
-            .flexible(true)
-            .from_reader(text.as_bytes())
-            .deserialize()
-            .map(Result::unwrap)
-            .collect::<Vec<HashMap<String, String>>>()
+    let case = |(row, placed, _): (Row, Placed, f64)| {
+        let mut ray = ray(&row);
+        ray.direction = ray.direction.normalize();
+        Case { placed, ray }
     };
-    let number = |row: &HashMap<String, String>, name: &str| -> f64 { row[name].parse().unwrap() };
-    let transforms: HashMap<String, Affine> = read(include_str!("data/transforms.csv"))
-        .iter()
-        .map(|row| {
-            let rows = [0, 1, 2].map(|i| [0, 1, 2, 3].map(|j| number(row, &format!("m{i}{j}"))));
-            (row["transform"].clone(), Affine { rows })
-        })
-        .collect();
-    read(include_str!("data/primitives.csv"))
-        .iter()
-        .map(|row| {
-            let kind = match row["shape"].as_str() {
-                "sphere" => ShapeKind::Sphere,
-                "cube" => ShapeKind::Cube,
-                "cylinder" => ShapeKind::Cylinder,
-                "rect" => ShapeKind::Rectangle,
-                "disk" => ShapeKind::Disk,
-                other => panic!("unknown shape {other}"),
-            };
-            let vector = |names: [&str; 3]| DVec3::from_array(names.map(|n| number(row, n)));
-            Case {
-                placed: Placed::new(kind, &transforms[&row["transform"]]).unwrap(),
-                ray: Ray {
-                    origin: vector(["ox", "oy", "oz"]),
-                    direction: vector(["dx", "dy", "dz"]).normalize(),
-                },
-            }
-        })
-        .collect()
+    primitives().into_iter().map(case).collect()
 }
 
 #[test]
@@ -246,14 +208,8 @@ fn lanes_never_contradict_the_ladder_on_nasty_rays() {
     for precision in PRECISIONS {
         let cases = nasty_cases(precision, 0x0050_facd, 12_000);
         for &kind in KINDS {
-            let mine: Vec<Case> = cases
-                .iter()
-                .filter(|case| case.placed.kind() == kind)
-                .map(|case| Case {
-                    placed: case.placed.clone(),
-                    ray: case.ray,
-                })
-                .collect();
+            let mine = cases.iter().filter(|case| case.placed.kind() == kind);
+            let mine: Vec<Case> = mine.cloned().collect();
             let record = Record::check_all(&mine, precision);
             record.assert_sound(&format!("{kind:?}, {precision:?}"));
             assert!(record.hits > 100 && record.undecided < record.asked);
@@ -296,14 +252,10 @@ fn all_instruction_sets_give_the_same_spans() {
         let all = on_each(|set| ask(set, precision, &cases));
         for (name, answers) in &all[1..] {
             for (a, b) in all[0].1.iter().zip(answers) {
-                assert!(
-                    (a.hit, a.miss) == (b.hit, b.miss)
-                        && same_bits(a.near[0], b.near[0])
-                        && same_bits(a.near[1], b.near[1])
-                        && same_bits(a.far[0], b.far[0])
-                        && same_bits(a.far[1], b.far[1]),
-                    "{name}: {a:?} {b:?}"
-                );
+                let ends = |span: &RaySpan| [span.near, span.far].concat();
+                let same = ends(a).iter().zip(ends(b)).all(|(a, b)| same_bits(*a, b));
+                let same = same && (a.hit, a.miss) == (b.hit, b.miss);
+                assert!(same, "{name}: {a:?} {b:?}");
             }
         }
     }
@@ -312,26 +264,23 @@ fn all_instruction_sets_give_the_same_spans() {
 #[test]
 fn a_wrong_span_is_noticed() {
     let cases = nasty_cases(Precision::Double, 9, 300);
-    let mut record = Record::default();
-    for (case, mut answer) in cases
-        .iter()
-        .zip(ask(Instructions::best(), Precision::Double, &cases))
-    {
-        // A bound a million times too small, as of a forgotten term.
+    let wrong = |spoil: fn(&mut RaySpan)| {
+        let mut record = Record::default();
+        let answers = ask(Instructions::best(), Precision::Double, &cases);
+        for (case, mut answer) in cases.iter().zip(answers) {
+            spoil(&mut answer);
+            record.check(case, &answer);
+        }
+        record.wrong.len()
+    };
+    // A bound a million times too small, as of a forgotten term.
+    let narrow = wrong(|answer| {
         for [low, high] in [&mut answer.near, &mut answer.far] {
             let (middle, half) = ((*low + *high) / 2.0, (*high - *low) / 2.0);
             (*low, *high) = (middle - 1e-6 * half, middle + 1e-6 * half);
         }
-        record.check(case, &answer);
-    }
-    assert!(record.wrong.len() > 10, "{}", record.wrong.len());
-    let mut record = Record::default();
-    for (case, mut answer) in cases
-        .iter()
-        .zip(ask(Instructions::best(), Precision::Double, &cases))
-    {
-        (answer.hit, answer.miss) = (answer.miss, answer.hit);
-        record.check(case, &answer);
-    }
-    assert!(record.wrong.len() > 300);
+    });
+    assert!(narrow > 10, "{narrow}");
+    let swapped = wrong(|answer| std::mem::swap(&mut answer.hit, &mut answer.miss));
+    assert!(swapped > 300, "{swapped}");
 }

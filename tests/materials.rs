@@ -2,21 +2,14 @@
 //! the list of materials and over a surface that is Lambertian, a modified Phong lobe and a mirror at
 //! once. Parameters come from what the materials declare, so that a new one is tested unasked.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "the tests' own scenes are right, and what they hold is known"
-)]
-
 use std::f64::consts::TAU;
 use std::ops::Bound;
-use std::path::Path;
 
-use etalon::Overrides;
 use etalon::inside::declare::{Declaration, Quantity, Range};
 use etalon::inside::material::{MaterialKind, Transport};
 use etalon::inside::math::instructions::Precision;
-use etalon::inside::scene;
 use etalon::inside::stats::family::sidak;
+use etalon::{Scene, SceneError};
 use etalon_doors::material::{
     C, Evaluation, Sample, Setting, Subject, evaluate_each, lambertian_and_general, sample_each,
 };
@@ -667,12 +660,12 @@ fn written(declaration: &Declaration, number: impl Fn(&Range) -> f64) -> String 
     format!("{{ {} = {main}{beside} }}", declaration.main.key)
 }
 
-fn read(material: &str) -> Result<scene::Scene, scene::SceneError> {
-    let text = format!(
-        "[camera]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nfov = 40\n[image]\nsize = [1, 1]\nspp = 1\n\
-         [materials]\nm = {material}\n"
-    );
-    scene::parse("test.toml", &text, Path::new(""), &Overrides::default())
+fn read(material: &str) -> Result<Scene, SceneError> {
+    Scene::parse(&format!(
+        "camera = {{ from = [0, 0, 0], to = [1, 0, 0], fov = 40 }}\n\
+         image = {{ size = [1, 1], spp = 1 }}\n\
+         materials.m = {material}\n"
+    ))
 }
 
 #[test]

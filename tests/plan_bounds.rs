@@ -1,10 +1,5 @@
 //! What single precision may blur: the plan's bounds over invented scenes of all scales.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "the tests' own scenes are right, and what they hold is known"
-)]
-
 use std::fmt::Write as _;
 
 use etalon::inside::integrate::chunk::Request;

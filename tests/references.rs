@@ -6,11 +6,6 @@
 //! raises a false alarm with probability below [`LEVEL`]. `ETALON_REFERENCE_SEED` draws other
 //! samples.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a failed unwrap is a failed test, and says where"
-)]
-
 use std::path::{Path, PathBuf};
 
 use etalon::Side;

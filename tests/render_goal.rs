@@ -1,35 +1,21 @@
 //! Renders that stop at a wanted error: unbiased, and near what was asked for; and error bars of
 //! blocks that hold as often as they say.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test that cannot go on has failed, and the panic says where"
-)]
-
-use std::path::PathBuf;
-
 use etalon::inside::render::goal::{choose, reached};
 use etalon::inside::render::{Instructions, Unwatched};
 use etalon::inside::study::coverage::{Coverage, Survey, cover};
 use etalon::inside::study::subject::{Ready, Subject};
 use etalon::{Estimate, Goal, Overrides, Rendered, Target};
-use tempfile::TempDir;
 
 use crate::statistics_support::moments;
+use crate::support::Folder;
 
 /// A small lamp over a floor, in a black room: most paths bring nothing.
 const SCENE: &str = r#"
-[camera]
-from = [0, 2, 4]
-to = [0, 0, 0]
-fov = 50
-[image]
-size = [8, 8]
-spp = 8
-max_depth = 3
-[materials]
-floor = { diffuse = 0.7 }
-lamp = { emit = 20 }
+camera = { from = [0, 2, 4], to = [0, 0, 0], fov = 50 }
+image = { size = [8, 8], spp = 8, max_depth = 3 }
+materials.floor = { diffuse = 0.7 }
+materials.lamp = { emit = 20 }
 [[object]]
 shape = { rectangle = { size = [3, 3] } }
 material = "floor"
@@ -40,35 +26,21 @@ material = "lamp"
 transform = [{ translate = [0.4, 0.6, 0] }]
 "#;
 
-struct Studio {
-    _directory: TempDir,
-    subject: Subject,
-}
-
-impl Studio {
-    fn new() -> Self {
-        let directory = tempfile::tempdir().unwrap();
-        let path: PathBuf = directory.path().join("lamp.toml");
-        std::fs::write(&path, SCENE).unwrap();
-        Self {
-            _directory: directory,
-            subject: Subject {
-                path,
-                overrides: Overrides::default(),
-                instructions: Instructions::best(),
-            },
-        }
-    }
-
-    fn ready(&self, settings: &[(&str, &str)]) -> Ready {
-        let set = settings.iter();
-        let set = set.map(|(key, value)| (format!("image.{key}"), (*value).to_owned()));
-        let overrides = Overrides {
-            set: set.collect(),
-            ..Overrides::default()
-        };
-        self.subject.ready(&overrides, "test".to_owned()).unwrap()
-    }
+/// The scene with settings of its image.
+fn ready(settings: &[(&str, &str)]) -> Ready {
+    let folder = Folder::new(SCENE);
+    let subject = Subject {
+        path: folder.path("scene.toml"),
+        overrides: Overrides::default(),
+        instructions: Instructions::best(),
+    };
+    let set = settings.iter();
+    let set = set.map(|(key, value)| (format!("image.{key}"), (*value).to_owned()));
+    let overrides = Overrides {
+        set: set.collect(),
+        ..Overrides::default()
+    };
+    subject.ready(&overrides, "test".to_owned()).unwrap()
 }
 
 fn render(ready: &mut Ready, seed: u64, samples: u32) -> Rendered {
@@ -90,8 +62,7 @@ fn truth(ready: &mut Ready) -> Estimate {
 
 #[test]
 fn a_goal_is_reached_without_bending_the_picture() {
-    let studio = Studio::new();
-    let mut ready = studio.ready(&[("sampler", "independent")]);
+    let mut ready = ready(&[("sampler", "independent")]);
     let truth = truth(&mut ready);
     let goal = Goal {
         target: Target::Image,
@@ -123,8 +94,7 @@ fn a_goal_is_reached_without_bending_the_picture() {
 
 #[test]
 fn a_render_that_stops_on_its_own_samples_would_be_noticed() {
-    let studio = Studio::new();
-    let mut ready = studio.ready(&[("sampler", "independent")]);
+    let mut ready = ready(&[("sampler", "independent")]);
     let truth = truth(&mut ready);
     // Eight replicates of four pixels' worth: small pilots that end as soon as they look good.
     let mut means = Vec::new();
@@ -163,19 +133,14 @@ fn true_worst_block(ready: &mut Ready, samples: u32) -> f64 {
 
 #[test]
 fn the_worst_block_reaches_its_goal_too() {
-    let studio = Studio::new();
     let goal = Goal {
         target: Target::Block,
         error: WANTED,
     };
     for sampler in ["independent", "stratified", "sobol"] {
         let ready = |samples: u32| {
-            let samples = samples.to_string();
-            studio.ready(&[
-                ("sampler", sampler),
-                ("size", "[24, 16]"),
-                ("spp", &samples),
-            ])
+            let size = ("size", "[24, 16]");
+            ready(&[("sampler", sampler), size, ("spp", &samples.to_string())])
         };
         const RUNS: u64 = 50;
         let mut square = 0.0;
@@ -198,8 +163,7 @@ fn the_worst_block_reaches_its_goal_too() {
 
 #[test]
 fn a_goal_that_needs_more_than_can_be_had_says_so() {
-    let studio = Studio::new();
-    let mut ready = studio.ready(&[]);
+    let mut ready = ready(&[]);
     let goal = Goal {
         target: Target::Image,
         error: 1e-6,
@@ -215,9 +179,8 @@ fn a_goal_that_needs_more_than_can_be_had_says_so() {
 
 #[test]
 fn intervals_of_blocks_hold_as_often_as_they_say() {
-    let studio = Studio::new();
     let size = ("size", "[64, 48]");
-    let mut survey = studio.ready(&[
+    let mut survey = ready(&[
         ("sampler", "independent"),
         ("spp", "64"),
         ("replicates", "64"),
@@ -225,7 +188,7 @@ fn intervals_of_blocks_hold_as_often_as_they_say() {
     ]);
     let blocks = Survey::new(&mut survey, 16).blocks();
     for sampler in ["independent", "stratified", "sobol"] {
-        let mut ready = studio.ready(&[("sampler", sampler), ("spp", "64"), size]);
+        let mut ready = ready(&[("sampler", sampler), ("spp", "64"), size]);
         let test = |ready: &mut Ready, blocks: &[_]| {
             (0..24)
                 .map(|render| cover(ready, render, blocks))

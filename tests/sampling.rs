@@ -4,8 +4,6 @@
 //! False alarms: this module's random tests share the family level 2e-4 (Šidák over an upper bound
 //! of their number), seeds are fixed and nothing is tried twice.
 
-#![allow(clippy::unwrap_used, reason = "the truths file is part of the tests")]
-
 use std::f64::consts::{PI, TAU};
 
 use etalon::Instructions;
@@ -21,7 +19,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::{PRECISIONS, Precision, everywhere, on_each};
 use crate::statistics_support::{chi_square, moments, normal_p, t_test, variance_p};
-use crate::truth_file::{list, number, truth};
+use crate::truth_file::{number, truth};
 
 /// Level of all random tests of this module together.
 const FAMILY: f64 = 2e-4;
@@ -153,14 +151,11 @@ fn promised(kind: SamplerKind, names: [&str; 3]) -> &str {
 /// Runs both truths over all kinds and sizes; `spoil` may change numbers and must be noticed.
 fn variances(precision: Precision, spoil: impl Fn(u32, f64) -> f64) -> Vec<(String, f64)> {
     let edge = truth("edge_variance");
-    let edge_at = number(&edge["setup"]["p"]);
+    let edge_at = edge.of("p");
     let ramp = truth("ramp_variance");
     let mut p_values = Vec::new();
     for kind in KINDS {
-        for (edge_row, ramp_row) in list(&edge["exact"]["rows"])
-            .iter()
-            .zip(list(&ramp["exact"]["rows"]))
-        {
+        for (edge_row, ramp_row) in edge.rows("rows").iter().zip(ramp.rows("rows")) {
             let n = number(&edge_row["N"]) as u32;
             assert_eq!(n, number(&ramp_row["N"]) as u32);
             let edge_variance =
@@ -531,8 +526,8 @@ fn replicates_share_out_all_samples() {
 fn standard_errors_are_honest() {
     // 16 samples in each of 8 jittered replicates across an edge.
     let edge = truth("edge_variance");
-    let p = number(&edge["setup"]["p"]);
-    let row = &list(&edge["exact"]["rows"])[1];
+    let p = edge.of("p");
+    let row = &edge.rows("rows")[1];
     let (replicates, spp, pixels) = (Replicates::Fixed(8), 128, 3_000);
     let sequence = Sequence::new(SamplerKind::Stratified, 3, spp, replicates);
     let requests: Vec<[u32; 4]> = (0..pixels)
@@ -578,8 +573,8 @@ fn standard_errors_are_honest() {
 #[test]
 fn stopping_on_the_pilot_is_biased_and_fixed_counts_are_not() {
     let truth = truth("two_stage_bias");
-    let p = number(&truth["setup"]["p"]);
-    let n = number(&truth["setup"]["N"]);
+    let p = truth.of("p");
+    let n = truth.of("N");
     let pixels = 4_000;
     let drawn = pixels_of(
         Precision::Single,
@@ -590,7 +585,7 @@ fn stopping_on_the_pilot_is_biased_and_fixed_counts_are_not() {
     );
     let fixed = pixel_means(&drawn, n as u32, 0, |x| f64::from(u8::from(x < p)));
     assert!(t_test(&fixed, p) > level());
-    for row in list(&truth["exact"]["rows"]) {
+    for row in truth.rows("rows") {
         let k = number(&row["k"]);
         // Σ over pilots with j hits: all equal stop, the others go on to N.
         let mut expected = 0.0;

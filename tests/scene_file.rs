@@ -1,8 +1,4 @@
 //! Scene files: what is read, and what is said when something is wrong.
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test that cannot go on has failed, and the panic says where"
-)]
 
 use std::path::Path;
 
@@ -72,7 +68,7 @@ materials = { white = { mirror = "Al" } }
 "#;
 
 fn parse(text: &str) -> Result<Scene, SceneError> {
-    scene::parse("test.toml", text, Path::new(""), &Overrides::default())
+    Scene::parse(text)
 }
 
 fn parse_with(text: &str, panel: Option<&str>, set: &[(&str, &str)]) -> Result<Scene, SceneError> {

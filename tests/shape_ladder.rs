@@ -1,10 +1,5 @@
 //! Every rung of the ladder against the exact one, on rays made to be nasty; odd input.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "the tests' own transforms are invertible"
-)]
-
 use std::cmp::Ordering;
 
 use etalon::inside::math::affine::Affine;

@@ -1,10 +1,5 @@
 //! Several objects: ties of t, exact order, limits.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "the tests' own scenes are hit by construction"
-)]
-
 use etalon::inside::shape::{Placed, Query, Ray, Rung, ShapeKind, Start, Tally, nearest, occluded};
 use glam::DVec3;
 use rand::SeedableRng;

@@ -1,24 +1,17 @@
 //! Power laws: intervals that hold as often as they say, wrong laws that are caught, and the laws
 //! of the samplers.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a fit that cannot be had has failed, and the panic says where"
-)]
-
-use std::path::Path;
-
-use etalon::inside::render::{Request, Unwatched, render};
 use etalon::inside::sample::Slot;
-use etalon::inside::scene::{SamplerKind, parse};
+use etalon::inside::scene::SamplerKind;
 use etalon::inside::stats::slope::{Replicates, Slope};
-use etalon::{Overrides, Plan};
+use etalon::{Plan, Scene};
 use etalon_doors::samplers::Numbers;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::Precision;
 use crate::sampling::{pixels_of, sequence};
+use crate::support::rendered;
 
 /// Values about a power law: `spread` is their relative standard deviation.
 fn planted(rng: &mut Pcg64Mcg, slope: f64, spread: f64, replicates: usize) -> Vec<Replicates> {
@@ -121,14 +114,18 @@ fn slope_of(
             });
         errors.sum::<f64>() / f64::from(PIXELS)
     };
-    let points: Vec<Replicates> = [16u32, 64, 256, 1024]
-        .iter()
-        .map(|&n| Replicates {
-            x: f64::from(n),
-            values: (0..SETS).map(|seed| square_error(n, 100 + seed)).collect(),
-        })
-        .collect();
-    Slope::fit(&points).unwrap().of_root(2.0)
+    root_slope(SETS, |n, seed| square_error(n, 100 + seed))
+}
+
+/// The slope of the root of squares over numbers of samples, from so many replicates.
+fn root_slope(replicates: u64, square: impl Fn(u32, u64) -> f64) -> Slope {
+    let point = |n: u32| Replicates {
+        x: f64::from(n),
+        values: (0..replicates).map(|k| square(n, k)).collect(),
+    };
+    Slope::fit(&[16, 64, 256, 1024].map(point))
+        .unwrap()
+        .of_root(2.0)
 }
 
 /// Whether a slope is within its own interval of what theory says, give or take `bend`.
@@ -177,34 +174,29 @@ fn samplers_fall_back_at_edges() {
 /// Pictures of 8 × 8 pixels, one replicate each, of a scene with a camera that looks down the z axis.
 fn picture(objects: &str, kind: SamplerKind, spp: u32, seed: u64) -> Vec<f64> {
     let text = format!(
-        "[camera]\nfrom = [0, 0, 4]\nto = [0, 0, 0]\nfov = 30\n[image]\nsize = [8, 8]\nspp = {spp}\n\
-         seed = {seed}\nreplicates = 1\nsampler = \"{}\"\n{objects}",
+        "camera = {{ from = [0, 0, 4], to = [0, 0, 0], fov = 30 }}\n\
+         image = {{ size = [8, 8], spp = {spp}, seed = {seed}, replicates = 1, sampler = \"{}\" }}\n\
+         {objects}",
         kind.name()
     );
-    let scene = parse("slope", &text, Path::new("."), &Overrides::default()).unwrap();
+    let scene = Scene::parse(&text).unwrap();
     let plan = Plan::new(&scene, false).unwrap();
-    let request = Request::whole(scene.image.size, spp);
-    let rendered = render(&plan, &request, &mut Unwatched);
-    rendered.xyz().iter().map(|pixel| pixel.mean[1]).collect()
+    rendered(&scene, &plan)
+        .xyz()
+        .iter()
+        .map(|pixel| pixel.mean[1])
+        .collect()
 }
 
 /// Slope of the root-mean-square error of luminance, from pairs of pictures: half the square of
 /// their difference has the mean of the squared error, whatever the truth is.
 fn slope_on(objects: &str, kind: SamplerKind) -> Slope {
     const PAIRS: u64 = 24;
-    let square = |spp: u32, pair: u64| {
+    root_slope(PAIRS, |spp, pair| {
         let [a, b] = [2 * pair, 2 * pair + 1].map(|seed| picture(objects, kind, spp, seed));
         let squares = a.iter().zip(&b).map(|(a, b)| (a - b) * (a - b) / 2.0);
         squares.sum::<f64>() / a.len() as f64
-    };
-    let points: Vec<Replicates> = [16u32, 64, 256, 1024]
-        .iter()
-        .map(|&spp| Replicates {
-            x: f64::from(spp),
-            values: (0..PAIRS).map(|pair| square(spp, pair)).collect(),
-        })
-        .collect();
-    Slope::fit(&points).unwrap().of_root(2.0)
+    })
 }
 
 /// A wall close by under a point light beside the camera.

@@ -1,10 +1,5 @@
 //! Spectra against published points and closed forms.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a failed unwrap is a failed test, and says where"
-)]
-
 use etalon::inside::spectrum::cells::means;
 use etalon::inside::spectrum::ior::{
     RefractiveIndex, glass_names, metal_names, named_glass, named_metal,
@@ -16,27 +11,13 @@ use etalon::inside::spectrum::observer::{
 use etalon::inside::spectrum::rgb::{fit_emission, fit_reflectance};
 use etalon::inside::spectrum::wavelengths::{WavelengthPdf, hero_relative_variance};
 use etalon::inside::spectrum::{NM_MAX, NM_MIN, RgbError, Spectrum, Table, TableError, illuminant};
-use serde_json::Value;
+
+use crate::truth_file::{number, numbers, truth};
 
 /// Fraunhofer lines d, F and C in nm.
 const LINE_D: f64 = 587.5618;
 const LINE_F: f64 = 486.1327;
 const LINE_C: f64 = 656.2725;
-
-fn truth(id: &str) -> Value {
-    let all: Value = serde_json::from_str(include_str!("data/truths.json")).unwrap();
-    let tests = all["tests"].as_array().unwrap();
-    tests.iter().find(|t| t["id"] == id).unwrap().clone()
-}
-
-fn numbers(value: &Value) -> Vec<f64> {
-    let list = value.as_array().unwrap();
-    list.iter().map(|v| v.as_f64().unwrap()).collect()
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap()
-}
 
 #[track_caller]
 fn assert_relative(got: f64, want: f64, tolerance: f64) {
@@ -236,7 +217,7 @@ fn equal_energy_has_luminance_one() {
 #[test]
 fn box_spectra_have_their_xyz_and_rgb() {
     let truth = truth("equal_energy_xyz");
-    for row in truth["exact"]["rows"].as_array().unwrap() {
+    for row in truth.rows("rows") {
         let ends = numbers(&row["box"]);
         let spectrum = Spectrum::Table(Table::new(ends, vec![1.0, 1.0]).unwrap());
         let xyz = spectrum_to_xyz(&spectrum);
@@ -284,7 +265,7 @@ fn the_matrix_is_the_rounded_standard_one() {
 fn blackbodies_have_planck_s_radiance() {
     let truth = truth("blackbody");
     let wavelengths = numbers(&truth["setup"]["nm"]);
-    for row in truth["exact"]["rows"].as_array().unwrap() {
+    for row in truth.rows("rows") {
         let kelvin = number(&row["T"]);
         let spectrum = Spectrum::Blackbody { kelvin, scale: 1.0 };
         for (nm, want) in wavelengths.iter().zip(numbers(&row["L"])) {
@@ -478,7 +459,7 @@ fn glasses_have_their_catalogue_index_and_abbe_number() {
 #[test]
 fn n_sf11_follows_its_dispersion() {
     let glass = named_glass("n-sf11").unwrap();
-    for row in truth("prism")["exact"]["rows"].as_array().unwrap() {
+    for row in truth("prism").rows("rows") {
         assert_relative(glass.n(number(&row["nm"])), number(&row["n"]), 1e-14);
     }
 }
@@ -570,7 +551,7 @@ fn formulas_by_hand() {
 fn the_visible_pdf_is_the_published_one() {
     let truth = truth("wavelength_pdf");
     let pdf = WavelengthPdf::Visible;
-    assert_relative(pdf.pdf(538.0), number(&truth["exact"]["A"]), 1e-14);
+    assert_relative(pdf.pdf(538.0), truth.exact("A"), 1e-14);
     for (u, nm) in numbers(&truth["setup"]["u"])
         .iter()
         .zip(numbers(&truth["exact"]["lam"]))

@@ -1,10 +1,5 @@
 //! The statistics that judge pictures, on numbers whose law is known.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a failed unwrap is a failed test, and says where"
-)]
-
 use etalon::Estimate;
 use etalon::inside::stats::family::{holm, sidak};
 use etalon::inside::stats::student;

@@ -1,11 +1,6 @@
 //! The wavelength grid: the cumulative density against its closed form, and what the observer's
 //! weights make of flat spectra.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "the tests' own tables are right, and a panic says where"
-)]
-
 use etalon::inside::integrate::develop::Spectrometer;
 use etalon::inside::integrate::pool::Rows;
 use etalon::inside::math::lanes::Scalar;
@@ -22,7 +17,7 @@ fn the_cumulative_density_is_the_published_one() {
     let truth = truth("wavelength_pdf");
     let grid = WavelengthGrid::default();
     let us = list(&truth["setup"]["u"]);
-    for (u, nm) in us.iter().zip(list(&truth["exact"]["lam"])) {
+    for (u, nm) in us.iter().zip(truth.rows("lam")) {
         let (u, nm) = (number(u), number(nm));
         let got = WavelengthPdf::Visible.sample(u);
         assert!((got - nm).abs() < 1e-9, "{got} {nm}");
@@ -33,7 +28,7 @@ fn the_cumulative_density_is_the_published_one() {
         assert!((got - nm).abs() < slack, "{got} {nm}");
     }
     // The density between two edges is A/cosh²: cells of equal probability.
-    let a = number(&truth["exact"]["A"]);
+    let a = truth.exact("A");
     for cell in 0..CELLS {
         let (low, high) = grid.cell(cell);
         let middle = 0.5 * (low + high);

@@ -7,9 +7,10 @@ use etalon::inside::spectrum::observer::{Y_INTEGRAL, xyz_bar};
 use etalon::inside::spectrum::{NM_MAX, NM_MIN};
 use glam::{DVec2, DVec3};
 
+use super::agree;
 use super::harness::Case;
 use super::scenes::Text;
-use super::{agree, number, numbers, truth};
+use crate::truth_file::{number, numbers, truth};
 
 pub fn cases() -> Vec<Case> {
     let families = [slab(), slab_shift(), prism(), rainbow(), coated_diffuse()];
@@ -65,7 +66,7 @@ fn slab() -> Vec<Case> {
             .rectangle("lamp", 40.0 * DVec3::X, 40.0 * DVec3::Y, lamp * DVec3::Z)
     };
     let mut cases = Vec::new();
-    for row in t["exact"]["rows"].as_array().unwrap() {
+    for row in t.rows("rows") {
         let (nm, ior) = (number(&row["nm"]), number(&row["n"]));
         let degrees = number(&row["theta_deg"]);
         let theta = degrees.to_radians();
@@ -102,7 +103,7 @@ fn slab() -> Vec<Case> {
 /// width w that arrives δ' instead of δ aside lights ½ + (δ' − δ)/w.
 fn slab_shift() -> Vec<Case> {
     let t = truth("slab_shift");
-    let (ior, thickness) = (number(&t["setup"]["n"]), number(&t["setup"]["t"]));
+    let [ior, thickness] = t.all(["n", "t"]);
     let angles = numbers(&t["setup"]["theta_deg"]);
     let shifts = numbers(&t["exact"]["delta"]);
     angles
@@ -231,10 +232,10 @@ fn prism() -> Vec<Case> {
     let setup = &t["setup"];
     let name = setup["glass"].as_str().unwrap();
     let index = named_glass(name).unwrap();
-    let prism = Prism::new(number(&setup["apex_deg"]).to_radians());
-    let incidence = number(&setup["i_deg"]);
+    let prism = Prism::new(t.of("apex_deg").to_radians());
+    let incidence = t.of("i_deg");
     let mut cases = Vec::new();
-    for row in t["exact"]["rows"].as_array().unwrap() {
+    for row in t.rows("rows") {
         let (nm, ior) = (number(&row["nm"]), number(&row["n"]));
         agree(index.n(nm), ior);
         let minimum = number(&row["i_min_deg"]);
@@ -260,7 +261,7 @@ fn prism() -> Vec<Case> {
     }
     // With dispersion: shorter wavelengths than the one that the lamp begins at find it.
     let i = incidence.to_radians();
-    for row in t["exact"]["rows"].as_array().unwrap() {
+    for row in t.rows("rows") {
         let (nm, ior) = (number(&row["nm"]), number(&row["n"]));
         let scene = prism.scene(&format!("\"{name}\""), i, ior, 1e-6, [50.0, 30.0]);
         let lit = until(nm, |nm| prism.trace(i, index.n(nm)).transmittance);
@@ -407,7 +408,7 @@ fn rainbow() -> Vec<Case> {
         panic!()
     };
     let mut cases = Vec::new();
-    for row in t["exact"]["rows"].as_array().unwrap() {
+    for row in t.rows("rows") {
         let (nm, ior) = (number(&row["nm"]), number(&row["n"]));
         agree(a + b / (nm / 1000.0).powi(2), ior);
         let (i, deviation) = descartes(ior);
@@ -449,9 +450,8 @@ fn rainbow() -> Vec<Case> {
 
 fn coated_diffuse() -> Vec<Case> {
     let t = truth("coated_diffuse");
-    let of = |key: &str| number(&t["setup"][key]);
-    let (ior, rho, lenv) = (of("n"), of("rho"), of("Lenv"));
-    let (outer, inner) = (number(&t["exact"]["r_e"]), number(&t["exact"]["r_i"]));
+    let [ior, rho, lenv] = t.all(["n", "rho", "Lenv"]);
+    let (outer, inner) = (t.exact("r_e"), t.exact("r_i"));
     agree(1.0 - (1.0 - outer) / (ior * ior), inner);
     // 4000 times as wide as high: light that leaves the base farther out than that by its first
     // way up and down is (1/4000)² of it.

@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use serde_json::Value;
 
+use super::agree;
 use super::harness::Case;
 use super::scenes::Text;
-use super::{agree, number, numbers, truth};
+use crate::truth_file::{list, number, numbers, truth, vector};
 
 pub fn cases() -> Vec<Case> {
     let families = [
@@ -22,11 +22,6 @@ pub fn cases() -> Vec<Case> {
         two_spheres(),
     ];
     families.into_iter().flatten().collect()
-}
-
-fn vector(value: &Value) -> DVec3 {
-    let list = numbers(value);
-    DVec3::new(list[0], list[1], list[2])
 }
 
 /// A small diffuse square about `p` seen from just above it, in a spot of 1e-4.
@@ -67,14 +62,11 @@ fn polygon(id: &str) -> Vec<Case> {
     let t = truth(id);
     let setup = &t["setup"];
     let (p, normal) = (vector(&setup["P"]), vector(&setup["N"]).normalize());
-    let (le, rho) = (number(&setup["Le"]), number(&setup["rho"]));
-    let corners: Vec<DVec3> = setup["V"].as_array().unwrap().iter().map(vector).collect();
-    let exact = number(&t["exact"]["L_o"]);
+    let [le, rho] = t.all(["Le", "rho"]);
+    let corners: Vec<DVec3> = list(&setup["V"]).iter().map(vector).collect();
+    let exact = t.exact("L_o");
     let relative: Vec<DVec3> = corners.iter().map(|c| *c - p).collect();
-    agree(
-        polygon_irradiance(&relative, normal, le),
-        number(&t["exact"]["E"]),
-    );
+    agree(polygon_irradiance(&relative, normal, le), t.exact("E"));
     let (a, b) = (
         (corners[1] - corners[0]) / 2.0,
         (corners[3] - corners[0]) / 2.0,
@@ -115,9 +107,8 @@ fn sphere_factor(r: f64, d: f64, c: f64) -> f64 {
 
 fn sphere() -> Vec<Case> {
     let t = truth("sphere_light");
-    let of = |key: &str| number(&t["setup"][key]);
-    let (r, d, le, rho) = (of("r"), of("d"), of("Le"), of("rho"));
-    let rows = t["exact"]["per_angle"].as_array().unwrap();
+    let [r, d, le, rho] = t.all(["r", "d", "Le", "rho"]);
+    let rows = t.rows("per_angle");
     rows.iter()
         .map(|row| {
             let degrees = number(&row["beta_deg"]);
@@ -134,9 +125,8 @@ fn sphere() -> Vec<Case> {
 
 fn disk() -> Vec<Case> {
     let t = truth("disk_light");
-    let of = |key: &str| number(&t["setup"][key]);
-    let (r, h, le, rho) = (of("r"), of("h"), of("Le"), of("rho"));
-    let rows = t["exact"]["per_offset"].as_array().unwrap();
+    let [r, h, le, rho] = t.all(["r", "h", "Le", "rho"]);
+    let rows = t.rows("per_offset");
     rows.iter()
         .map(|row| {
             let a = number(&row["a"]);
@@ -154,9 +144,8 @@ fn disk() -> Vec<Case> {
 
 fn point() -> Vec<Case> {
     let t = truth("point_light");
-    let of = |key: &str| number(&t["setup"][key]);
-    let (intensity, h, rho) = (of("I"), of("h"), of("rho"));
-    let rows = t["exact"]["per_point"].as_array().unwrap();
+    let [intensity, h, rho] = t.all(["I", "h", "rho"]);
+    let rows = t.rows("per_point");
     rows.iter()
         .map(|row| {
             let x = number(&row["x"]);
@@ -171,9 +160,8 @@ fn point() -> Vec<Case> {
 
 fn occluder() -> Vec<Case> {
     let t = truth("sphere_occluder_in_environment");
-    let of = |key: &str| number(&t["setup"][key]);
-    let (r, h, rho, lenv) = (of("r"), of("h"), of("rho"), of("Lenv"));
-    let rows = t["exact"]["per_point"].as_array().unwrap();
+    let [r, h, rho, lenv] = t.all(["r", "h", "rho", "Lenv"]);
+    let rows = t.rows("per_point");
     rows.iter()
         .map(|row| {
             let x = number(&row["x"]);
@@ -197,19 +185,15 @@ fn occluder() -> Vec<Case> {
 fn mirror_image() -> Vec<Case> {
     let t = truth("mirror_image_of_sphere_light");
     let setup = &t["setup"];
-    let of = |key: &str| number(&setup[key]);
-    let (r, reflectance, le, rho, x) = (of("r"), of("R"), of("Le"), of("rho"), of("mirror_x"));
+    let [r, reflectance, le, rho, x] = t.all(["r", "R", "Le", "rho", "mirror_x"]);
     let (p, centre) = (vector(&setup["P"]), vector(&setup["sphere"]));
     let irradiance = |c: DVec3| {
         let to = c - p;
         PI * le * sphere_factor(r, to.length(), to.z / to.length())
     };
     let image = DVec3::new(2.0 * x - centre.x, centre.y, centre.z);
-    agree(irradiance(centre), number(&t["exact"]["E_direct"]));
-    agree(
-        reflectance * irradiance(image),
-        number(&t["exact"]["E_mirror"]),
-    );
+    agree(irradiance(centre), t.exact("E_direct"));
+    agree(reflectance * irradiance(image), t.exact("E_mirror"));
     let scene = receiver(p, DVec3::Z, rho)
         .material("lamp", &format!("emit = {le:?}"))
         .material("mirror", &format!("mirror = {{ ideal = {reflectance:?} }}"))
@@ -220,7 +204,7 @@ fn mirror_image() -> Vec<Case> {
             5.0 * DVec3::Z,
             DVec3::new(x, 0.0, 0.0),
         );
-    let exact = number(&t["exact"]["L_o"]);
+    let exact = t.exact("L_o");
     // The receiver's own light by way of the mirror is below 1e-5 of it.
     vec![Case::new("mirror_image_of_sphere_light", scene, exact).systematic(1e-5)]
 }
@@ -249,7 +233,7 @@ fn plates() -> Vec<Case> {
     let t = truth("plate_view_factors");
     let [opposed, perpendicular, disks] =
         ["opposed", "perpendicular", "disks"].map(|key| numbers(&t["setup"][key]));
-    let exact = |key: &str| number(&t["exact"][key]);
+    let exact = |key: &str| t.exact(key);
     let view = |centre: DVec3, side: f64| {
         Text::upright(centre + 1e-3 * DVec3::Z, -DVec3::Z, DVec3::Y, side)
             .size([16, 16])
@@ -301,8 +285,7 @@ fn plates() -> Vec<Case> {
 /// F12 is the mean over sphere 1 of the factor of its elements, and those are looked at.
 fn two_spheres() -> Vec<Case> {
     let t = truth("two_sphere_view_factor");
-    let of = |key: &str| number(&t["setup"][key]);
-    let (r1, r2, s) = (of("r1"), of("r2"), of("s"));
+    let [r1, r2, s] = t.all(["r1", "r2", "s"]);
     let element = |r1: f64, r2: f64, psi: f64| {
         let d = (r1 * r1 + s * s - 2.0 * r1 * s * psi.cos()).sqrt();
         sphere_factor(r2, d, (s * psi.cos() - r1) / d)
@@ -317,8 +300,8 @@ fn two_spheres() -> Vec<Case> {
             .sum();
         sum * step / 2.0
     };
-    agree(factor(r1, r2), number(&t["exact"]["F12"]));
-    agree(factor(r2, r1), number(&t["exact"]["F21"]));
+    agree(factor(r1, r2), t.exact("F12"));
+    agree(factor(r2, r1), t.exact("F21"));
     let largest = element(r1, r2, 0.0);
     (0..8)
         .map(|i| f64::from(i) * PI / 16.0)
