@@ -1,12 +1,16 @@
 //! Reading the oracle's tables, whose answers come from exact rational arithmetic.
 
 use std::collections::HashMap;
-use std::sync::Arc;
 
-use etalon::inside::field::expression::{Expression, Parameter, parse, rational};
 use etalon::inside::math::affine::Affine;
 use etalon::inside::shape::{Placed, Ray, ShapeKind};
 use glam::DVec3;
+
+#[path = "../tools/method/src/finders/shapes.rs"]
+mod shapes;
+
+pub use shapes::OracleShape;
+use shapes::read_shapes;
 
 /// A line by the names of its columns.
 pub type Row = HashMap<String, String>;
@@ -110,37 +114,7 @@ pub fn primitive_fault(want: &Row, hit: Option<(f64, DVec3)>) -> Option<String> 
     None
 }
 
-/// A surface within the cube [−half_width, half_width]³.
-pub struct OracleShape {
-    /// What rays call it.
-    pub name: String,
-    pub half_width: f64,
-    pub degree: u32,
-    pub field: Arc<Expression>,
-}
-
-/// The surfaces that the rays of `implicit.csv` are about: lines
-/// `name;half_width;degree;expression[, NAME=value]` below a heading.
+/// The surfaces that the rays of `implicit.csv` are about.
 pub fn shapes() -> Vec<OracleShape> {
-    let lines = include_str!("data/implicit_shapes.csv").lines().skip(1);
-    let shape = |line: &str| {
-        let [name, half, degree, written] = line.split(';').collect::<Vec<_>>().try_into().unwrap();
-        let mut parts = written.split(", ");
-        let expression = parts.next().unwrap();
-        let parameters = parts.map(|part| {
-            let (name, value) = part.split_once('=').unwrap();
-            Parameter {
-                name: name.to_owned(),
-                value: rational(value).unwrap(),
-            }
-        });
-        let parameters: Vec<Parameter> = parameters.collect();
-        OracleShape {
-            name: name.to_owned(),
-            half_width: half.parse().unwrap(),
-            degree: degree.parse().unwrap(),
-            field: Arc::new(parse(expression, &parameters).unwrap()),
-        }
-    };
-    lines.map(shape).collect()
+    read_shapes(include_str!("data/implicit_shapes.csv")).unwrap()
 }

@@ -31,7 +31,6 @@ pub struct Question {
 /// What a ray meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
-    /// Distance.
     pub t: f64,
     /// Number of the part, or [`NOTHING`].
     pub part: u32,

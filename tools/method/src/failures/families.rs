@@ -7,11 +7,12 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use super::Subject;
+use crate::finders::implicit;
 use etalon::inside::field::evaluate::Field;
 use etalon::inside::field::expression::{Expression, parse};
 use etalon::inside::field::named;
 use etalon::inside::math::affine::Affine;
-use etalon::inside::scene::{FinderChoice, Implicit};
+use etalon::inside::scene::Implicit;
 use etalon::inside::shape::implicit::certified::Certified;
 use etalon::inside::shape::{Ray, ShapeKind};
 
@@ -40,7 +41,6 @@ pub const FAMILIES: [Family; 5] = [
 ];
 
 impl Family {
-    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Graze => "graze",
@@ -73,33 +73,21 @@ impl Family {
     }
 }
 
-/// An object of a problem.
 #[derive(Debug, Clone)]
 pub struct Body {
     /// Canonical or object coordinates → world.
     pub to_world: Affine,
-    /// The shape, if it is a canonical one.
     pub kind: Option<ShapeKind>,
-    /// The surface, if it is an implicit one.
     pub implicit: Option<Implicit>,
     /// The same with exact arithmetic.
     pub certified: Option<Certified>,
 }
 
-/// A ray.
-#[derive(Debug, Clone, Copy)]
-pub struct Case {
-    /// As all numbers stand.
-    pub ray: Ray,
-}
-
 /// Bodies, and rays that are asked for their first hit.
 #[derive(Debug, Clone)]
 pub struct Problem {
-    /// Objects.
     pub bodies: Vec<Body>,
-    /// Rays.
-    pub cases: Vec<Case>,
+    pub rays: Vec<Ray>,
     /// Size of an object in the world, for what counts as the same hit.
     pub size: f64,
     /// Where a camera would stand that sees the object from as far as the rays come.
@@ -190,11 +178,8 @@ fn touching(kind: ShapeKind, random: &mut Pcg64Mcg) -> [DVec3; 3] {
         }
         ShapeKind::Disk => {
             let n = DVec3::new(cosine, sine, 0.0);
-            [
-                n,
-                n,
-                mixed(DVec3::Z, DVec3::new(-sine, cosine, 0.0), random),
-            ]
+            let line = mixed(DVec3::Z, DVec3::new(-sine, cosine, 0.0), random);
+            [n, n, line]
         }
         ShapeKind::Rectangle => {
             let line = mixed(DVec3::Z, DVec3::Y, random);
@@ -229,7 +214,7 @@ impl Problem {
         };
         let mut problem = Self {
             bodies,
-            cases: Vec::new(),
+            rays: Vec::new(),
             size: 2.0 * half,
             camera: DVec3::Z * (far * half + 2.0 * half),
         };
@@ -243,8 +228,7 @@ impl Problem {
             } else {
                 (to_world.point(o), to_world.vector(d))
             };
-            let ray = Ray { origin, direction };
-            problem.cases.push(Case { ray });
+            problem.rays.push(Ray { origin, direction });
         }
         Some(problem)
     }
@@ -332,7 +316,7 @@ fn bodies(
     model: Option<&Model>,
 ) -> Option<Vec<Body>> {
     if let Some(model) = model {
-        let implicit = model.implicit();
+        let implicit = implicit(&model.expression, model.half);
         let certified = Certified::new(&implicit.field.tape, implicit.inside, to_world).ok()??;
         return Some(vec![Body {
             to_world: *to_world,
@@ -382,17 +366,6 @@ impl Model {
             expression: Arc::new(expression),
             half: named.half_width,
         })
-    }
-
-    fn implicit(&self) -> Implicit {
-        Implicit {
-            name: None,
-            field: Arc::clone(&self.expression),
-            inside: [DVec3::splat(-self.half), DVec3::splat(self.half)],
-            closed: false,
-            finder: FinderChoice::Auto,
-            steps: 256,
-        }
     }
 
     /// A point of the surface, its normal and a tangent.
