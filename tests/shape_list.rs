@@ -6,17 +6,10 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
 use crate::shape_ladder::{KINDS, cubed, decade, placed};
+use crate::support::from_zero;
 
 fn free(_: usize) -> Start {
     Start::Free
-}
-
-fn along(origin: DVec3, direction: DVec3) -> Query {
-    Query {
-        ray: Ray { origin, direction },
-        t_min: 0.0,
-        t_max: f64::INFINITY,
-    }
 }
 
 #[test]
@@ -26,7 +19,7 @@ fn equal_t_goes_by_priority_then_index() {
         placed(ShapeKind::Cube, 0.5, DVec3::new(0.0, 0.0, 1.5)),
         placed(ShapeKind::Cube, 1.0, DVec3::ZERO),
     ];
-    let up = along(DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.01, 0.03, 0.1));
+    let up = from_zero(DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.01, 0.03, 0.1));
     for (first, priority) in [(0, [0, 0]), (0, [0, 1]), (1, [1, 0])] {
         let mut tally = Tally::default();
         let (index, hit) = nearest(&cubes, &up, free, |i| priority[i], &mut tally).unwrap();
@@ -45,7 +38,7 @@ fn equal_irrational_t_is_recognised_and_the_smallest_difference_too() {
         placed(ShapeKind::Sphere, 1.0, DVec3::ZERO),
         placed(ShapeKind::Cylinder, 1.0, DVec3::ZERO),
     ];
-    let flat = along(DVec3::new(-3.0, 0.1, 0.0), DVec3::new(0.7, 0.1, 0.0));
+    let flat = from_zero(DVec3::new(-3.0, 0.1, 0.0), DVec3::new(0.7, 0.1, 0.0));
     for first in [0, 1] {
         let winner = |i: usize| u8::from(i != first);
         let (index, _) = nearest(&round, &flat, free, winner, &mut Tally::default()).unwrap();
@@ -57,7 +50,7 @@ fn equal_irrational_t_is_recognised_and_the_smallest_difference_too() {
         placed(ShapeKind::Sphere, 1.0, DVec3::X * 2f64.powi(-200)),
     ];
     for (side, first) in [(-3.0, 0), (3.0, 1)] {
-        let ray = along(DVec3::new(side, 0.1, 0.2), DVec3::new(-side, 0.05, 0.1));
+        let ray = from_zero(DVec3::new(side, 0.1, 0.2), DVec3::new(-side, 0.05, 0.1));
         let loser = |i: usize| u8::from(i == first);
         let mut tally = Tally::default();
         let (index, hit) = nearest(&spheres, &ray, free, loser, &mut tally).unwrap();
@@ -74,7 +67,7 @@ fn nearest_agrees_with_the_hits_one_by_one() {
             .map(|i| placed(KINDS[i], decade(&mut rng, -1.0, 0.5), 2.0 * cubed(&mut rng)))
             .collect();
         let from = 6.0 * cubed(&mut rng);
-        let query = along(from, 2.0 * cubed(&mut rng) - from);
+        let query = from_zero(from, 2.0 * cubed(&mut rng) - from);
         let mut tally = Tally::default();
         let single = objects
             .iter()
@@ -85,16 +78,10 @@ fn nearest_agrees_with_the_hits_one_by_one() {
         assert_eq!(single, several.map(|hit| hit.t));
         let Some(t) = single else { continue };
         found += 1;
-        let (before, past) = (
-            Query {
-                t_max: t * 0.999,
-                ..query
-            },
-            Query {
-                t_max: t * 1.001,
-                ..query
-            },
-        );
+        let [before, past] = [0.999, 1.001].map(|factor| Query {
+            t_max: t * factor,
+            ..query
+        });
         assert!(!occluded(&objects, &before, free, &mut tally));
         assert!(occluded(&objects, &past, free, &mut tally));
         assert!(!occluded(&objects, &past, |_| Start::Excluded, &mut tally));
@@ -118,23 +105,21 @@ fn limits_are_strict_except_at_zero() {
         let hit = cube.first_hit(&ray, t_min, Start::Free, &mut Tally::default());
         hit.map(|hit| hit.t)
     };
-    assert_eq!(t(-2.0, 0.0), Some(1.0));
-    assert_eq!(t(-2.0, 1.0), Some(3.0));
-    assert_eq!(t(-2.0, 3.0), None);
-    assert_eq!(t(-1.0, 0.0), Some(0.0));
-    assert_eq!(t(1.0, 0.0), Some(0.0));
+    for (origin, t_min, wanted) in [
+        (-2.0, 0.0, Some(1.0)),
+        (-2.0, 1.0, Some(3.0)),
+        (-2.0, 3.0, None),
+        (-1.0, 0.0, Some(0.0)),
+        (1.0, 0.0, Some(0.0)),
+    ] {
+        assert_eq!(t(origin, t_min), wanted);
+    }
     let query = |t_min, t_max| Query { ray, t_min, t_max };
     let cubes = [cube.clone()];
     let blocked = |q: Query| occluded(&cubes, &q, free, &mut Tally::default());
     assert!(!blocked(query(0.0, 1.0)) && blocked(query(0.0, 1.0 + f64::EPSILON)));
     assert!(!blocked(query(1.0, 3.0)) && blocked(query(0.0, f64::INFINITY)));
-    let touching = Query {
-        ray: Ray {
-            origin: DVec3::new(-1.0, 0.25, 0.5),
-            direction: -DVec3::X,
-        },
-        t_min: 0.0,
-        t_max: 9.0,
-    };
+    let mut touching = from_zero(DVec3::new(-1.0, 0.25, 0.5), -DVec3::X);
+    touching.t_max = 9.0;
     assert!(!blocked(touching));
 }

@@ -52,12 +52,8 @@ fn lens_edge() -> Vec<Case> {
                 x1: x0 + 8,
                 y1: rows,
             };
-            Case::new(
-                format!("thin_lens_edge u = {u}"),
-                scene.clone(),
-                profile(own),
-            )
-            .window(window)
+            let name = format!("thin_lens_edge u = {u}");
+            Case::new(name, scene.clone(), profile(own)).window(window)
         })
         .collect()
 }
@@ -94,10 +90,8 @@ fn ellipsoid() -> Vec<Case> {
     let (t, matrix, u) = sheared();
     let u = u.normalize();
     let area = t.exact("silhouette_area");
-    agree(
-        PI * matrix.determinant().abs() * (matrix.inverse() * u).length(),
-        area,
-    );
+    let shrunk = (matrix.inverse() * u).length();
+    agree(PI * matrix.determinant().abs() * shrunk, area);
     let columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
     let reach = columns.iter().map(|c| c.length()).sum::<f64>();
     let height = 2.0 * reach;

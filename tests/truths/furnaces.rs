@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::agree;
 use super::glass::{fresnel_dielectric, over_wavelengths};
 use super::harness::Case;
-use super::scenes::{Text, n};
+use super::scenes::Text;
 use crate::truth_file::{number, numbers, truth};
 
 pub fn cases() -> Vec<Case> {
@@ -52,21 +52,15 @@ fn closed() -> Vec<Case> {
     let scene = |shape: &str, sides: &str| {
         let from = DVec3::new(0.3, 0.2, -0.1);
         Text::perspective(from, DVec3::new(0.2, 0.5, 0.8), 90.0)
-            .material(
-                "wall",
-                &format!("diffuse = {rho:?}, emit = {le:?}, sides = \"{sides}\""),
-            )
+            .material("wall", &emitting(rho, le, sides))
             .object(shape, "wall")
     };
     let both = scene("sphere = {}", "both");
     let mut cases = vec![Case::new("furnace_closed sphere both", both, whole)];
     for shape in ["sphere", "cube", "cylinder"] {
         let scene = scene(&format!("{shape} = {{}}"), "back");
-        cases.push(Case::new(
-            format!("furnace_closed {shape}"),
-            scene.clone(),
-            whole,
-        ));
+        let name = format!("furnace_closed {shape}");
+        cases.push(Case::new(name, scene.clone(), whole));
         let limited = numbers(&t["exact"]["L_m"]);
         for (m, limited) in numbers(&t["setup"]["m"]).into_iter().zip(limited) {
             agree(le * (1.0 - rho.powf(m + 1.0)) / (1.0 - rho), limited);
@@ -139,12 +133,8 @@ fn glass() -> Vec<Case> {
         let r = fresnel_dielectric(theta.cos(), ior);
         agree(r, number(&row["R_unpolarised"]));
         let glass = format!("{{ ior = {ior:?} }}");
-        let l = number(&row["L"]);
-        cases.push(Case::new(
-            format!("furnace_glass {nm} nm"),
-            whole(&glass),
-            l,
-        ));
+        let name = format!("furnace_glass {nm} nm");
+        cases.push(Case::new(name, whole(&glass), number(&row["L"])));
         let limited = numbers(&row["L_depth"]);
         for (e, limited) in exits.iter().zip(limited) {
             agree(lenv * ways_out(r, *e), limited);
@@ -160,9 +150,8 @@ fn glass() -> Vec<Case> {
         cases.push(Case::new(name, whole(&glass), flat).channel(channel));
     }
     for e in &exits {
-        let limited = over_wavelengths(|nm| {
-            lenv * ways_out(fresnel_dielectric(theta.cos(), index.n(nm)), *e)
-        });
+        let out = |nm| lenv * ways_out(fresnel_dielectric(theta.cos(), index.n(nm)), *e);
+        let limited = over_wavelengths(out);
         let scene = spot(&glass).depth(*e as u32 + 2);
         let name = format!("furnace_glass dispersive, {e} exits");
         cases.push(Case::new(name, scene, limited[1]));
@@ -209,16 +198,10 @@ fn mirror_sphere_interior() -> Vec<Case> {
         let incidence = (1.0 - (a / r * sine).powi(2)).sqrt();
         let reflectance = fresnel_conductor(incidence, index, k);
         agree(le / (1.0 - reflectance), number(&row["L"]));
-        let scene = Text::orthographic(
-            DVec3::new(0.0, 0.0, a),
-            DVec3::new(sine, 0.0, cosine),
-            1e-4 * r,
-        )
-        .material(
-            "wall",
-            &format!("mirror = {{ n = {index:?}, k = {k:?} }}, emit = {le:?}, sides = \"back\""),
-        )
-        .sphere("wall", r, DVec3::ZERO);
+        let metal = format!("mirror = {{ n = {index:?}, k = {k:?} }}");
+        let scene = Text::orthographic(a * DVec3::Z, DVec3::new(sine, 0.0, cosine), 1e-4 * r)
+            .material("wall", &format!("{metal}, emit = {le:?}, sides = \"back\""))
+            .sphere("wall", r, DVec3::ZERO);
         let name = format!("mirror_sphere_interior {degrees}°");
         let limited = scene.clone().depth(m as u32 + 1);
         cases.push(Case::new(name.clone(), scene, number(&row["L"])));
@@ -246,7 +229,7 @@ fn integrating_sphere() -> Vec<Case> {
             "port",
             1.01 * r * half_angle.sin(),
             DVec3::Z,
-            DVec3::new(0.0, 0.0, height),
+            height * DVec3::Z,
         )
         .point_light(DVec3::ZERO, intensity);
     let mut cases = vec![Case::new("integrating_sphere", scene.clone(), wall)];
@@ -291,48 +274,34 @@ pub fn two_bodies(ratio: f64, rho: [f64; 2], le: [f64; 2]) -> [f64; 2] {
     [le[0] + rho[0] * outer, outer]
 }
 
+/// A diffuse surface that emits.
+fn emitting(rho: f64, le: f64, sides: &str) -> String {
+    format!("diffuse = {rho:?}, emit = {le:?}, sides = \"{sides}\"")
+}
+
 /// A view from between two concentric spheres, inward or outward.
 pub fn between(r: [f64; 2], rho: [f64; 2], le: [f64; 2], inward: bool) -> Text {
     let out = DVec3::new(0.6, 0.0, 0.8);
     let towards = if inward { -out } else { out };
     let from = out * ((r[0] + r[1]) / 2.0);
     Text::perspective(from, towards, 20.0)
-        .material(
-            "inner",
-            &format!("diffuse = {}, emit = {}", n(rho[0]), n(le[0])),
-        )
-        .material(
-            "outer",
-            &format!(
-                "diffuse = {}, emit = {}, sides = \"back\"",
-                n(rho[1]),
-                n(le[1])
-            ),
-        )
+        .material("inner", &emitting(rho[0], le[0], "front"))
+        .material("outer", &emitting(rho[1], le[1], "back"))
         .sphere("inner", r[0], DVec3::ZERO)
         .sphere("outer", r[1], DVec3::ZERO)
 }
 
 fn concentric_spheres() -> Vec<Case> {
     let t = truth("concentric_spheres");
-    let (r, rho, le) = (
-        t.all(["r1", "r2"]),
-        t.all(["rho1", "rho2"]),
-        t.all(["Le1", "Le2"]),
-    );
+    let [r, rho, le] = ["r", "rho", "Le"].map(|key| [1, 2].map(|i| t.of(&format!("{key}{i}"))));
     let exact = ["L_inner", "L_outer"].map(|key| t.exact(key));
     let own = two_bodies(r[0] / r[1], rho, le);
-    [true, false]
-        .into_iter()
-        .zip(exact)
-        .zip(own)
-        .map(|((inward, exact), own)| {
-            agree(own, exact);
-            let side = if inward { "inner" } else { "outer" };
-            let scene = between(r, rho, le, inward);
-            Case::new(format!("concentric_spheres {side}"), scene, exact)
-        })
-        .collect()
+    let case = |i: usize| {
+        agree(own[i], exact[i]);
+        let name = format!("concentric_spheres {}", ["inner", "outer"][i]);
+        Case::new(name, between(r, rho, le, i == 0), exact[i])
+    };
+    [0, 1].map(case).into()
 }
 
 fn parallel_plates() -> Vec<Case> {
@@ -346,17 +315,8 @@ fn parallel_plates() -> Vec<Case> {
             let towards = if below { -DVec3::Z } else { DVec3::Z };
             let axes = [size * DVec3::X, size * DVec3::Y, DVec3::Z];
             let scene = Text::orthographic(DVec3::new(0.0, 0.0, 0.5), towards, 0.1)
-                .material(
-                    "lower",
-                    &format!("diffuse = {:?}, emit = {:?}", rho[0], le[0]),
-                )
-                .material(
-                    "upper",
-                    &format!(
-                        "diffuse = {:?}, emit = {:?}, sides = \"back\"",
-                        rho[1], le[1]
-                    ),
-                )
+                .material("lower", &emitting(rho[0], le[0], "front"))
+                .material("upper", &emitting(rho[1], le[1], "back"))
                 .placed(&format!("{shape} = {{}}"), "lower", axes, DVec3::ZERO)
                 .placed(&format!("{shape} = {{}}"), "upper", axes, DVec3::Z);
             let (i, j) = if below { (0, 1) } else { (1, 0) };
@@ -396,7 +356,6 @@ fn facing_mirrors() -> Vec<Case> {
         cases.push(Case::new(format!("facing_mirrors j = {j}"), scene, exact));
     }
     let exact = t.exact("L_emitting");
-    let axes = [DVec3::X, DVec3::Y, DVec3::Z];
     let scene = look
         .material("lower", &format!("{metal}, emit = {le:?}"))
         .material(
@@ -404,7 +363,7 @@ fn facing_mirrors() -> Vec<Case> {
             &format!("{metal}, emit = {le:?}, sides = \"back\""),
         )
         .object("plane = {}", "lower")
-        .placed("plane = {}", "upper", axes, DVec3::Z);
+        .placed("plane = {}", "upper", DVec3::AXES, DVec3::Z);
     cases.push(Case::new("facing_mirrors emitting", scene, exact));
     cases
 }

@@ -46,15 +46,11 @@ fn polygon_irradiance(corners: &[DVec3], normal: DVec3, le: f64) -> f64 {
             above.push(a + (b - a) * (da / (da - db)));
         }
     }
-    let sum: f64 = (0..above.len())
-        .map(|i| {
-            let (u, w) = (
-                above[i].normalize(),
-                above[(i + 1) % above.len()].normalize(),
-            );
-            u.dot(w).clamp(-1.0, 1.0).acos() * u.cross(w).normalize().dot(normal)
-        })
-        .sum();
+    let edge = |i: usize| {
+        let [u, w] = [i, i + 1].map(|i| above[i % above.len()].normalize());
+        u.dot(w).clamp(-1.0, 1.0).acos() * u.cross(w).normalize().dot(normal)
+    };
+    let sum: f64 = (0..above.len()).map(edge).sum();
     le / 2.0 * sum.abs()
 }
 
@@ -67,10 +63,7 @@ fn polygon(id: &str) -> Vec<Case> {
     let exact = t.exact("L_o");
     let relative: Vec<DVec3> = corners.iter().map(|c| *c - p).collect();
     agree(polygon_irradiance(&relative, normal, le), t.exact("E"));
-    let (a, b) = (
-        (corners[1] - corners[0]) / 2.0,
-        (corners[3] - corners[0]) / 2.0,
-    );
+    let [a, b] = [1, 3].map(|i: usize| (corners[i] - corners[0]) / 2.0);
     let centre = (corners[0] + corners[2]) / 2.0;
     ["front", "back", "both"]
         .into_iter()
@@ -198,12 +191,7 @@ fn mirror_image() -> Vec<Case> {
         .material("lamp", &format!("emit = {le:?}"))
         .material("mirror", &format!("mirror = {{ ideal = {reflectance:?} }}"))
         .sphere("lamp", r, centre)
-        .rectangle(
-            "mirror",
-            5.0 * DVec3::Y,
-            5.0 * DVec3::Z,
-            DVec3::new(x, 0.0, 0.0),
-        );
+        .rectangle("mirror", 5.0 * DVec3::Y, 5.0 * DVec3::Z, x * DVec3::X);
     let exact = t.exact("L_o");
     // The receiver's own light by way of the mirror is below 1e-5 of it.
     vec![Case::new("mirror_image_of_sphere_light", scene, exact).systematic(1e-5)]
@@ -249,10 +237,8 @@ fn plates() -> Vec<Case> {
     let scene = view(DVec3::ZERO, side)
         .rectangle("plate", a / 2.0 * x, b / 2.0 * y, DVec3::ZERO)
         .rectangle("lamp", b / 2.0 * y, a / 2.0 * x, c * z);
-    let mut cases = vec![
-        Case::new("plate_view_factors opposed", scene, exact("F_opposed"))
-            .mapped(0.0, side * side / (a * b)),
-    ];
+    let case = Case::new("plate_view_factors opposed", scene, exact("F_opposed"));
+    let mut cases = vec![case.mapped(0.0, side * side / (a * b))];
 
     let [w, h, l] = perpendicular[..] else {
         panic!()
@@ -262,23 +248,17 @@ fn plates() -> Vec<Case> {
     let scene = view(centre, side)
         .rectangle("plate", w / 2.0 * x, l / 2.0 * y, centre)
         .rectangle("lamp", l / 2.0 * y, h / 2.0 * z, h / 2.0 * z);
-    cases.push(
-        Case::new(
-            "plate_view_factors perpendicular",
-            scene,
-            exact("F_perpendicular"),
-        )
-        .mapped(0.0, side * side / (w * l)),
-    );
+    let name = "plate_view_factors perpendicular";
+    let case = Case::new(name, scene, exact("F_perpendicular"));
+    cases.push(case.mapped(0.0, side * side / (w * l)));
 
     let [r1, r2, h] = disks[..] else { panic!() };
     agree(disks_factor(r1, r2, h), exact("F_disks_12"));
     let scene = view(DVec3::ZERO, 2.0 * r1)
         .disk("plate", r1, z, DVec3::ZERO)
         .disk("lamp", r2, -z, h * z);
-    cases.push(
-        Case::new("plate_view_factors disks", scene, exact("F_disks_12")).mapped(0.0, 4.0 / PI),
-    );
+    let case = Case::new("plate_view_factors disks", scene, exact("F_disks_12"));
+    cases.push(case.mapped(0.0, 4.0 / PI));
     cases
 }
 
