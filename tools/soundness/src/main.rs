@@ -44,19 +44,15 @@ fn main() -> ExitCode {
     println!("instruction sets: {}", names.join(", "));
     let mut sound = true;
     for operation in OPERATIONS {
-        let check =
-            |seed, count| Some(arithmetic::check(operation, seed, count, arguments.unsound));
-        sound &= told(
-            &format!("{operation:?}"),
-            &over(&arguments, arguments.arithmetic, check),
-        );
+        let unsound = arguments.unsound;
+        let check = |seed, count| Some(arithmetic::check(operation, seed, count, unsound));
+        let report = over(&arguments, arguments.arithmetic, check);
+        sound &= told(&format!("{operation:?}"), &report);
     }
     for function in FUNCTIONS {
         let check = |seed, count| functions::check(function, seed, count, arguments.unsound);
-        sound &= told(
-            &format!("{function:?}"),
-            &over(&arguments, arguments.functions, check),
-        );
+        let report = over(&arguments, arguments.functions, check);
+        sound &= told(&format!("{function:?}"), &report);
     }
     if arguments.rays > 0 && !arguments.unsound {
         sound &= rays::check(arguments.rays, arguments.seed);
@@ -90,16 +86,13 @@ fn over(
 }
 
 fn told(name: &str, report: &Report) -> bool {
+    let example = report.example.as_ref().map(|e| format!("; {e}"));
     println!(
         "{name}: {} checked, {} violated, {} batches with different bits{}",
         report.checked,
         report.violated,
         report.different,
-        report
-            .example
-            .as_ref()
-            .map(|e| format!("; {e}"))
-            .unwrap_or_default()
+        example.unwrap_or_default()
     );
     report.is_good()
 }
