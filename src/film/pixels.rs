@@ -39,6 +39,7 @@ impl<const N: usize> Estimate<N> {
     /// With nᵣ samples in replicate r and m its mean, the squared standard error is
     /// Σ nᵣ (mᵣ − m)²/((K − 1) Σ nᵣ), unbiased where a replicate's variance falls as 1/nᵣ, and for
     /// any law where all have the same number.
+    #[inline]
     pub fn new<'a>(
         counts: &[f64],
         sums: impl Iterator<Item = &'a [f64; N]> + Clone,
@@ -137,6 +138,7 @@ impl Pixels {
 
     /// Mean and standard error of a pixel, channels mapped by `channels`; its replicates have as many
     /// samples as [`counts`](Self::counts) says.
+    #[inline]
     pub fn estimate(
         &self,
         pixel: usize,

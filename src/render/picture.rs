@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::builder::Render;
 use super::layers;
-use super::session::Rendered;
+use super::session::{Rendered, Share};
 use super::trace::Singular;
 use crate::film::provenance::Provenance;
 use crate::film::{Attribute, Channel, Picture, names};
@@ -37,15 +37,17 @@ impl Render {
         if let Some(grid) = &self.spectral {
             layers::push_spectral(&mut picture, grid, rendered);
         }
-        picture.attributes.extend(self.provenance(rendered));
-        self.further(&mut picture, rendered);
+        let limited = self.scene().image.max_depth.is_some();
+        let cut_off = limited.then(|| rendered.cut_off());
+        let provenance = self.provenance(rendered, cut_off);
+        picture.attributes.extend(provenance);
+        self.further(&mut picture, rendered, cut_off);
         Ok(picture)
     }
 
-    fn provenance(&self, rendered: &Rendered) -> Vec<(String, Attribute)> {
+    fn provenance(&self, rendered: &Rendered, cut_off: Option<Share>) -> Vec<(String, Attribute)> {
         let (scene, plan) = (self.scene(), self.plan());
         let error = rendered.mean_luminance().standard_error;
-        let limited = scene.image.max_depth.is_some();
         let provenance = Provenance {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scene_path: scene.source.path.clone(),
@@ -63,14 +65,14 @@ impl Render {
             samples_per_second: rendered.samples_per_second(),
             nan_count: rendered.not_a_number,
             standard_error: error.is_finite().then_some(error),
-            energy_cut: limited.then(|| rendered.cut_off().value),
+            energy_cut: cut_off.map(|share| share.value),
             lights_left_out: plan.left_out.clone(),
         };
         provenance.attributes()
     }
 
     /// What is known beyond the provenance of every picture.
-    fn further(&self, picture: &mut Picture, rendered: &Rendered) {
+    fn further(&self, picture: &mut Picture, rendered: &Rendered, cut_off: Option<Share>) {
         let scene = self.scene();
         let mut add = |name: &str, value| picture.attributes.push((name.to_owned(), value));
         let settings = scene.source.set.iter();
@@ -98,9 +100,9 @@ impl Render {
         if let Some(goal) = self.goal() {
             add("targetError", Attribute::Double(goal.error));
         }
-        if scene.image.max_depth.is_some() {
-            let error = rendered.cut_off().standard_error;
-            add("energyCutStandardError", Attribute::Double(error));
+        if let Some(share) = cut_off {
+            let error = Attribute::Double(share.standard_error);
+            add("energyCutStandardError", error);
         }
     }
 }

@@ -20,19 +20,26 @@ const LEVELS: u32 = 6;
 /// Most cells looked at for a face; beyond, the outermost that is left is taken.
 const MOST_CELLS: usize = 1 << 12;
 
-struct Cell([ScalarInterval; 3]);
+struct Cell<'a> {
+    axes: [ScalarInterval; 3],
+    /// Of the tape, enclosed once.
+    constants: &'a [ScalarInterval],
+}
+
+/// A tape and its constants, enclosed.
+type Field<'a> = (&'a Tape, Vec<ScalarInterval>);
 
 fn everything() -> ScalarInterval {
     Interval::whole(One)
 }
 
-impl Algebra for Cell {
+impl Algebra for Cell<'_> {
     type Value = ScalarInterval;
     fn coordinate(&self, axis: usize) -> ScalarInterval {
-        self.0[axis]
+        self.axes[axis]
     }
-    fn constant(&self, _: usize, exact: &BigRational) -> ScalarInterval {
-        Interval::splat(One, enclosing_rational(exact))
+    fn constant(&self, index: usize, _: &BigRational) -> ScalarInterval {
+        self.constants[index]
     }
     fn unary(&self, function: Unary, a: &ScalarInterval) -> ScalarInterval {
         match function {
@@ -60,11 +67,14 @@ impl Algebra for Cell {
 
 /// The box; `None` where the surface has been proved to be nowhere in the clip box.
 pub fn outer_box(fields: &[Tape], clip: [DVec3; 2]) -> Option<[DVec3; 2]> {
+    let enclosed = |c: &BigRational| Interval::splat(One, enclosing_rational(c));
+    let constants = |tape: &Tape| tape.constants().iter().map(enclosed).collect();
+    let fields: Vec<Field> = fields.iter().map(|tape| (tape, constants(tape))).collect();
     let mut whole = clip;
     for axis in 0..3 {
         // The faces found so far make the next searches shorter.
-        whole[0][axis] = face(fields, whole, axis, false)?;
-        whole[1][axis] = face(fields, whole, axis, true)?;
+        whole[0][axis] = face(&fields, whole, axis, false)?;
+        whole[1][axis] = face(&fields, whole, axis, true)?;
     }
     Some(whole)
 }
@@ -99,7 +109,7 @@ impl Ord for Candidate {
 }
 
 /// The outermost face of a cell that may hold a zero; `None` where no cell does.
-fn face(fields: &[Tape], whole: [DVec3; 2], axis: usize, upper: bool) -> Option<f64> {
+fn face(fields: &[Field], whole: [DVec3; 2], axis: usize, upper: bool) -> Option<f64> {
     let candidate = |cell: [DVec3; 2], level| Candidate {
         outermost: if upper { cell[1][axis] } else { -cell[0][axis] },
         level,
@@ -126,11 +136,11 @@ fn face(fields: &[Tape], whole: [DVec3; 2], axis: usize, upper: bool) -> Option<
     Some(if upper { outermost } else { -outermost })
 }
 
-fn may_vanish(fields: &[Tape], cell: [DVec3; 2], scratch: &mut Vec<ScalarInterval>) -> bool {
+fn may_vanish(fields: &[Field], cell: [DVec3; 2], scratch: &mut Vec<ScalarInterval>) -> bool {
     let [low, high] = [cell[0].to_array(), cell[1].to_array()];
-    let intervals = Cell([0, 1, 2].map(|i| Interval::splat(One, [low[i], high[i]])));
-    fields.iter().any(|tape| {
-        let value = tape.evaluate(&intervals, scratch);
+    let axes = [0, 1, 2].map(|i| Interval::splat(One, [low[i], high[i]]));
+    fields.iter().any(|(tape, constants)| {
+        let value = tape.evaluate(&Cell { axes, constants }, scratch);
         value.is_none_or(|value| value.may_be_zero())
     })
 }

@@ -76,11 +76,13 @@ pub fn spectrum_to_xyz(spectrum: &Spectrum) -> [f64; 3] {
 }
 
 /// Luminance of linear R, G, B: Rec. ITU-R BT.709-6, item 3.2.
+#[inline]
 pub fn luminance(rgb: [f64; 3]) -> f64 {
     0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
 }
 
 /// Linear sRGB of XYZ (D65 white, no adaptation); components may be negative or above 1.
+#[inline]
 pub fn xyz_to_linear_srgb(xyz: [f64; 3]) -> [f64; 3] {
     XYZ_TO_LINEAR_SRGB.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])
 }
