@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use rayon::prelude::*;
 
 use crate::oracle_support::{Row, number, primitive_fault, rows, table, vector};
-use crate::support::{Folder, Said};
+use crate::support::{Finished, Folder};
 
 const HEAD: &str = "\
 camera = { from = [0, 0, 5], to = [0, 0, 0], fov = 40 }
@@ -410,6 +410,6 @@ fn a_reader_that_has_seen_enough_is_no_error() {
     let arguments = ["trace", "scene.toml", "--rays", "rays.csv"];
     let mut child = scene.command(&arguments).spawn().unwrap();
     drop(child.stdout.take());
-    let said = Said::from(child.wait_with_output().unwrap());
+    let said = Finished::from(child.wait_with_output().unwrap());
     assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
 }

@@ -336,7 +336,7 @@ mod interrupts {
     use std::process::{Child, Command};
     use std::time::Duration;
 
-    use crate::support::Said;
+    use crate::support::Finished;
 
     use super::*;
 
@@ -368,7 +368,7 @@ mod interrupts {
         let folder = Folder::new(SCENE);
         let child = started(&folder, &[]);
         interrupt(&child);
-        let said = Said::from(child.wait_with_output().unwrap());
+        let said = Finished::from(child.wait_with_output().unwrap());
         assert_eq!(said.code, Some(0));
         let said = said.out;
         assert!(said.contains("interrupted after "), "{said}");

@@ -12,7 +12,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::Value;
 
-use crate::support::{Folder, Said, assert_says};
+use crate::support::{Finished, Folder, assert_says};
 use crate::truth_file::{list, number};
 
 /// Edge of the pictures, pixels.
@@ -107,7 +107,7 @@ fn text(text: &str) -> Attribute {
 }
 
 /// Runs the command on two pictures in a folder with a scene file.
-fn compare(a: &Picture, b: Option<&Picture>, arguments: &[&str]) -> (Said, Folder) {
+fn compare(a: &Picture, b: Option<&Picture>, arguments: &[&str]) -> (Finished, Folder) {
     let folder = Folder::new(SCENE);
     let mut all = vec!["compare", "a.exr"];
     exr::write(&folder.path("a.exr"), a).unwrap();

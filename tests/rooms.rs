@@ -112,7 +112,7 @@ fn unknown(table: &Table) -> Vec<String> {
     folders(&source)
         .chain(folders(&source.join("lanes")))
         .filter_map(|path| Some(path.file_name()?.to_str()?.to_owned()))
-        // The command line is the program's, above all rooms; tests knock at doors.
+        // The command line is the program's, above all rooms; `doors` is for tests.
         .filter(|name| !["cli", "lanes", "doors"].contains(&name.as_str()))
         .filter(|name| !table.contains_key(name))
         .collect()

@@ -18,15 +18,15 @@ use tempfile::TempDir;
 /// A folder of its own, in which the program runs.
 pub struct Folder(TempDir);
 
-/// What the program has said.
+/// The exit code of a run that is over, and what it wrote to stdout and stderr.
 #[derive(Debug)]
-pub struct Said {
+pub struct Finished {
     pub code: Option<i32>,
     pub out: String,
     pub err: String,
 }
 
-impl From<Output> for Said {
+impl From<Output> for Finished {
     fn from(output: Output) -> Self {
         Self {
             code: output.status.code(),
@@ -78,12 +78,12 @@ impl Folder {
         process
     }
 
-    pub fn run(&self, arguments: &[&str]) -> Said {
+    pub fn run(&self, arguments: &[&str]) -> Finished {
         self.command(arguments).output().unwrap().into()
     }
 
     /// With something on its standard input.
-    pub fn run_with(&self, arguments: &[&str], input: &str) -> Said {
+    pub fn run_with(&self, arguments: &[&str], input: &str) -> Finished {
         let mut command = self.command(arguments);
         let mut child = command.stdin(Stdio::piped()).spawn().unwrap();
         let mut stdin = child.stdin.take().unwrap();

@@ -1,4 +1,5 @@
-//! The test suite, one binary. It compiles no lane code: tests that ask lanes knock at `etalon-doors`.
+//! The test suite, one binary. It compiles no lane code: what tests ask of lanes is a function of
+//! `etalon-doors`.
 
 #![allow(clippy::too_many_lines, reason = "tables of cases are long")]
 #![allow(

@@ -28,37 +28,28 @@ impl Bounds {
     }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Operation {
-    Sum,
-    Difference,
-    Product,
-    Quotient,
-    SquareRoot,
+/// An enum of these variants, and the list of all.
+macro_rules! listed {
+    ($(#[$doc:meta])* $name:ident: $($variant:ident),+) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum $name {
+            $($variant),+
+        }
+
+        impl $name {
+            pub const ALL: &[Self] = &[$(Self::$variant),+];
+        }
+    };
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Function {
-    Exponential,
-    Logarithm,
-    Sine,
-    Cosine,
-    /// sin x as for short intervals.
-    SineThin,
-    /// cos x as for short intervals.
-    CosineThin,
-    Tangent,
-    ArcSine,
-    ArcCosine,
-    ArcTangent,
-    /// Angle of the point (y, x).
-    ArcTangent2,
-    HyperbolicSine,
-    HyperbolicCosine,
-    HyperbolicTangent,
-    Power,
-    Seventh,
-    MinusFourth,
+listed! { Operation: Sum, Difference, Product, Quotient, SquareRoot }
+
+listed! {
+    /// Those called thin are made for short intervals.
+    Function: Exponential, Logarithm, Sine, Cosine, SineThin, CosineThin, Tangent, ArcSine, ArcCosine,
+    ArcTangent, ArcTangent2, HyperbolicSine, HyperbolicCosine, HyperbolicTangent, Power, Seventh,
+    MinusFourth
 }
 
 /// An operation on as many intervals as fill packets of any width. `to_nearest` leaves out the

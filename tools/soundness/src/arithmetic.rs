@@ -8,15 +8,6 @@ use etalon_doors::intervals::{Bounds, Operation, arithmetic};
 use super::exact::{compare_product, compare_sum};
 use super::random::Source;
 
-/// All of them.
-pub const OPERATIONS: [Operation; 5] = [
-    Operation::Sum,
-    Operation::Difference,
-    Operation::Product,
-    Operation::Quotient,
-    Operation::SquareRoot,
-];
-
 /// Whether the bounds hold the exact result of two numbers; true where there is none.
 pub fn holds(operation: Operation, x: f64, y: f64, [low, high]: [f64; 2]) -> bool {
     let ordered = |bound: f64, order: &dyn Fn(f64) -> Ordering, wanted: Ordering| {

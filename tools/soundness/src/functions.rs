@@ -7,27 +7,6 @@ use etalon_doors::intervals::{self, Bounds, Function};
 use super::arithmetic::Report;
 use super::random::Source;
 
-/// All of them.
-pub const FUNCTIONS: [Function; 17] = [
-    Function::Exponential,
-    Function::Logarithm,
-    Function::Sine,
-    Function::Cosine,
-    Function::SineThin,
-    Function::CosineThin,
-    Function::Tangent,
-    Function::ArcSine,
-    Function::ArcCosine,
-    Function::ArcTangent,
-    Function::ArcTangent2,
-    Function::HyperbolicSine,
-    Function::HyperbolicCosine,
-    Function::HyperbolicTangent,
-    Function::Power,
-    Function::Seventh,
-    Function::MinusFourth,
-];
-
 /// Bits of the reference: arguments of size 2¹⁰²⁴ keep them all after reduction by π.
 const PRECISION: usize = 192;
 const NEAREST: RoundingMode = RoundingMode::ToEven;

@@ -9,10 +9,10 @@ mod rays;
 
 use std::process::ExitCode;
 
-use arithmetic::{OPERATIONS, Report};
+use arithmetic::Report;
 use clap::Parser;
 use etalon::Instructions;
-use functions::FUNCTIONS;
+use etalon_doors::intervals::{Function, Operation};
 use rayon::prelude::*;
 
 /// Intervals of one piece of work.
@@ -43,13 +43,13 @@ fn main() -> ExitCode {
     let names: Vec<&str> = Instructions::all().iter().map(|i| i.name()).collect();
     println!("instruction sets: {}", names.join(", "));
     let mut sound = true;
-    for operation in OPERATIONS {
+    for &operation in Operation::ALL {
         let unsound = arguments.unsound;
         let check = |seed, count| Some(arithmetic::check(operation, seed, count, unsound));
         let report = over(&arguments, arguments.arithmetic, check);
         sound &= told(&format!("{operation:?}"), &report);
     }
-    for function in FUNCTIONS {
+    for &function in Function::ALL {
         let check = |seed, count| functions::check(function, seed, count, arguments.unsound);
         let report = over(&arguments, arguments.functions, check);
         sound &= told(&format!("{function:?}"), &report);

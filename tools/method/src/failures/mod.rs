@@ -250,8 +250,8 @@ impl Judged {
     }
 }
 
-/// What a method says, and of which body.
-type Said = (Answer, usize);
+/// What a method claims of a ray, and of which body.
+type Claim = (Answer, usize);
 
 fn score(method: Method, problem: &Problem, judged: &Judged, precision: Precision) -> Score {
     let Some(mut finder) = Asked::new(method, problem) else {
@@ -352,7 +352,7 @@ impl Asked {
         Some(Self::Finder(Box::new(asked)))
     }
 
-    fn first_hit(&mut self, ray: &Ray) -> Said {
+    fn first_hit(&mut self, ray: &Ray) -> Claim {
         match self {
             Self::Single(all) => nearest(all.iter().map(|one| one.first_hit(ray))),
             Self::Double(all) => nearest(all.iter().map(|one| one.first_hit(ray))),
@@ -392,7 +392,7 @@ fn moved<T: Scalar>(inverse: &Affine, ray: &Ray) -> Ray {
 }
 
 /// The smallest t, and whose it is.
-fn nearest(hits: impl Iterator<Item = Option<f64>>) -> Said {
+fn nearest(hits: impl Iterator<Item = Option<f64>>) -> Claim {
     let hits = hits.enumerate().filter_map(|(body, t)| Some((t?, body)));
     // The first of equal ones.
     let first = hits.reduce(|a, b| if a.0 <= b.0 { a } else { b });
