@@ -7,7 +7,7 @@ use etalon::inside::film::provenance::hash;
 use etalon::inside::film::spectral::channel_name;
 use etalon::inside::film::{exr, names};
 use etalon::inside::stats::student;
-use etalon::{Attribute, Channel, Picture, Side};
+use etalon::{Attribute, Channel, Estimate, Picture, Side};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::Value;
@@ -61,34 +61,21 @@ impl Drawn {
             for pixel in 0..EDGE * EDGE {
                 let (x, y) = (pixel % EDGE, pixel / EDGE);
                 let inside = x < 8 && (8..16).contains(&y);
-                let truth = self.factor
-                    * if inside { self.block } else { 1.0 }
-                    * (index + 1) as f64
-                    * (1.0 + x as f64);
-                let parts: Vec<f64> = (0..REPLICATES)
-                    .map(|_| truth * (1.0 + NOISE * normal()))
-                    .collect();
-                let count = REPLICATES as f64;
-                let mean = parts.iter().sum::<f64>() / count;
-                let squares: f64 = parts.iter().map(|p| (p - mean) * (p - mean)).sum();
-                let variance = squares / (count * (count - 1.0)) * self.told * self.told;
-                values.push(mean as f32);
-                errors.push((if variances { variance } else { variance.sqrt() }) as f32);
+                let factor = self.factor * if inside { self.block } else { 1.0 };
+                let truth = factor * (index + 1) as f64 * (1.0 + x as f64);
+                let parts = [(); REPLICATES].map(|()| truth * (1.0 + NOISE * normal()));
+                let mean = Estimate::mean(&parts);
+                let error = mean.standard_error * self.told;
+                values.push(mean.value as f32);
+                errors.push((if variances { error * error } else { error }) as f32);
             }
-            let layer = if variances {
-                "variance"
-            } else {
-                names::STANDARD_ERROR
-            };
+            let layer = ["variance", names::STANDARD_ERROR][usize::from(!variances)];
             picture.channels.push(Channel::float(name, values));
             let name = names::in_layer(layer, name);
             picture.channels.push(Channel::float(name, errors));
         }
-        set(
-            &mut picture,
-            "replicates",
-            Attribute::Int(REPLICATES as i32),
-        );
+        let replicates = Attribute::Int(REPLICATES as i32);
+        set(&mut picture, "replicates", replicates);
         picture
     }
 
@@ -160,17 +147,13 @@ fn a_bias_of_all_or_of_a_block_is_seen() {
 /// Error bars that are too small show in the distribution of the blocks, not in their means.
 #[test]
 fn dishonest_error_bars_are_seen() {
-    let told = |told, seed| Drawn {
-        told,
-        seed,
+    let told = Drawn {
+        told: 0.5,
         ..HONEST
     };
-    let judged = judge(&told(0.5, 3).side(), &told(0.5, 4).side(), LEVEL).unwrap();
-    let rejected: Vec<&String> = judged.channels.iter().flat_map(|c| &c.rejected).collect();
-    assert!(
-        rejected.iter().any(|words| words.contains("distributed")),
-        "{rejected:?}"
-    );
+    let judged = judge(&told.seed(3).side(), &told.seed(4).side(), LEVEL).unwrap();
+    let mut rejected = judged.channels.iter().flat_map(|c| &c.rejected);
+    assert!(rejected.any(|words| words.contains("distributed")));
 }
 
 /// Over many honest pairs the alarms are as frequent as the level says, and what is said to be
@@ -179,9 +162,8 @@ fn dishonest_error_bars_are_seen() {
 fn level_and_power_are_as_stated() {
     let (runs, level) = (200, 0.1);
     let judged = |a: Drawn, b: Drawn| judge(&a.side(), &b.side(), level).unwrap();
-    let alarms = (0..runs)
-        .filter(|run| !judged(HONEST.seed(100 + 2 * run), HONEST.seed(101 + 2 * run)).consistent)
-        .count() as f64;
+    let honest = |run: u64| judged(HONEST.seed(100 + 2 * run), HONEST.seed(101 + 2 * run));
+    let alarms = (0..runs).filter(|run| !honest(*run).consistent).count() as f64;
     // 20 expected at most (tests of one picture are independent here), standard deviation 4.2.
     assert!((3.0..37.0).contains(&alarms), "{alarms}");
     let smallest = judged(HONEST, HONEST.seed(2)).channels[0].smallest_caught;
@@ -190,15 +172,12 @@ fn level_and_power_are_as_stated() {
         factor: 1.0 + smallest,
         ..HONEST
     };
-    let caught = (0..runs)
-        .filter(|run| {
-            let judged = judged(biased.seed(1000 + 2 * run), HONEST.seed(1001 + 2 * run));
-            judged.channels[0]
-                .rejected
-                .iter()
-                .any(|w| w.contains("mean"))
-        })
-        .count();
+    let is_caught = |run: &u64| {
+        let judged = judged(biased.seed(1000 + 2 * run), HONEST.seed(1001 + 2 * run));
+        let mut rejected = judged.channels[0].rejected.iter();
+        rejected.any(|words| words.contains("mean"))
+    };
+    let caught = (0..runs).filter(is_caught).count();
     assert!(caught >= 92, "{caught} of {runs}");
 }
 
@@ -321,11 +300,8 @@ fn flip_is_that_of_its_authors() {
         ];
         let factor = 1.0 + 0.06 * (((7 * x + 13 * y) % 5) as f64 - 2.0);
         reference.push(pixel);
-        test.push([
-            pixel[0] * factor,
-            pixel[1] * factor,
-            pixel[2] * (2.0 - factor),
-        ]);
+        let [r, g, b] = pixel;
+        test.push([r * factor, g * factor, b * (2.0 - factor)]);
     }
     let map = flip(&reference, &test, width);
     let mean = map.iter().sum::<f64>() / map.len() as f64;
@@ -337,11 +313,8 @@ fn flip_is_that_of_its_authors() {
     ] {
         assert!((own / authors - 1.0).abs() < 3e-4, "{own} and {authors}");
     }
-    assert!(
-        flip(&reference, &reference, width)
-            .iter()
-            .all(|d| *d == 0.0)
-    );
+    let same = flip(&reference, &reference, width);
+    assert!(same.iter().all(|difference| *difference == 0.0));
 }
 
 /// What `compare` calls a p-value is one.
@@ -351,11 +324,8 @@ fn p_values_are_students() {
     for channel in &judged.channels {
         let score = channel.relative_bias / channel.standard_error;
         let p = student::two_sided(score, channel.freedom);
+        let found = channel.p_value;
         // Rounding of single precision is allowed for, a millionth beside an error of 0.15 %.
-        assert!(
-            (channel.p_value - p).abs() < 0.01,
-            "{} and {p}",
-            channel.p_value
-        );
+        assert!((found - p).abs() < 0.01, "{found} and {p}");
     }
 }

@@ -34,8 +34,7 @@ fn exact(x: f64) -> BigRational {
 }
 
 fn random_point(random: &mut impl Rng, size: f64) -> DVec3 {
-    let [x, y, z] = [(); 3].map(|()| random.random_range(-size..size));
-    DVec3::new(x, y, z)
+    [(); 3].map(|()| random.random_range(-size..size)).into()
 }
 
 #[test]
@@ -53,10 +52,8 @@ fn constants_are_rounded_to_nearest() {
         assert!(off(rounded) <= off(rounded.next_down()), "{value}");
     }
     assert_eq!(nearest(&BigRational::new(9.into(), 80.into())), 9.0 / 80.0);
-    assert_eq!(
-        nearest(&exact(f64::MIN_POSITIVE / 8.0)),
-        f64::MIN_POSITIVE / 8.0
-    );
+    let subnormal = f64::MIN_POSITIVE / 8.0;
+    assert_eq!(nearest(&exact(subnormal)), subnormal);
 }
 
 /// Automatic differentiation against the exact gradient of the polynomial, within the bound that
@@ -82,11 +79,8 @@ fn gradients_of_named_surfaces_are_exact_but_for_rounding() {
             let limit = error + f64::EPSILON * wanted.length();
             assert!(off <= limit, "{}: {off} > {limit}", surface.name);
             // Some hundred operations on numbers up to some thousands: far below this.
-            assert!(
-                error < 1e-9 * (1.0 + wanted.length()),
-                "{}: {error}",
-                surface.name
-            );
+            let most = 1e-9 * (1.0 + wanted.length());
+            assert!(error < most, "{}: {error}", surface.name);
         }
     }
 }
@@ -130,10 +124,8 @@ fn rules_of_differentiation_agree_with_differences() {
         for _ in 0..50 {
             let p = random_point(&mut random, 1.0);
             // Where a minimum or an absolute value bends there is no derivative.
-            if (p.x - p.y).abs() < 1e-3
-                || (p.x * p.y).abs() < 1e-3
-                || (p.x - p.y * p.z).abs() < 1e-3
-            {
+            let bends = [p.x - p.y, p.x * p.y, p.x - p.y * p.z];
+            if bends.iter().any(|x| x.abs() < 1e-3) {
                 continue;
             }
             let h = 1e-5;
@@ -164,12 +156,11 @@ fn lanes_compute_what_scalars_do() {
                 None => expression(text),
             };
             let field = Field::new(&expression.tape);
-            let points: Vec<DVec3> = (0..64)
-                .map(|_| {
-                    let p = random_point(&mut random, 1.0);
-                    DVec3::from_array(p.to_array().map(|x| precision.rounded(x)))
-                })
-                .collect();
+            let mut point = |_| {
+                let p = random_point(&mut random, 1.0);
+                DVec3::from_array(p.to_array().map(|x| precision.rounded(x)))
+            };
+            let points: Vec<DVec3> = (0..64).map(&mut point).collect();
             let columns =
                 [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).collect::<Vec<f64>>());
             let [x, y, z] = &columns;
@@ -200,11 +191,8 @@ fn lanes_compute_what_scalars_do() {
 /// that is s = (x² + 9/80 y²)^⅓ z: smooth, with the gradient (2x, 9/2 y, −(x² + 9/80 y²)^⅓).
 #[test]
 fn the_heart_has_its_normal_where_the_gradient_vanishes() {
-    let heart = named::find("heart")
-        .expect("a heart")
-        .field(&[])
-        .expect("a field");
-    let field = Field::new(&heart.tape);
+    let heart = named::find("heart").expect("a heart");
+    let field = Field::new(&heart.field(&[]).expect("a field").tape);
     let mut random = Pcg64Mcg::seed_from_u64(5);
     for _ in 0..200 {
         let angle: f64 = random.random_range(0.0..std::f64::consts::TAU);
@@ -258,10 +246,8 @@ fn normals_are_finite_everywhere() {
             let random_direction = random_point(&mut random, 1.0);
             for direction in [axis, random_direction] {
                 let normal = outward(&field, p, direction, 4.0);
-                assert!(
-                    (normal.length() - 1.0).abs() < 1e-14,
-                    "{text} at {p}: {normal}"
-                );
+                let off = (normal.length() - 1.0).abs();
+                assert!(off < 1e-14, "{text} at {p}: {normal}");
             }
         }
     }

@@ -96,12 +96,8 @@ impl Record {
             100.0 * self.undecided as f64 / self.asked as f64,
             self.tightest,
         );
-        assert!(
-            self.wrong.is_empty(),
-            "{what}: {} wrong, such as\n{}",
-            self.wrong.len(),
-            self.wrong[..self.wrong.len().min(3)].join("\n")
-        );
+        let some = self.wrong[..self.wrong.len().min(3)].join("\n");
+        assert_eq!(self.wrong.len(), 0, "{what}: such as\n{some}");
     }
 }
 
@@ -152,15 +148,9 @@ fn nasty(rng: &mut impl Rng, to_world: &Affine, precision: Precision) -> Ray {
         1 => rng.random_range(-3.0..3.0),
         _ => decade(rng, -2.0, 6.0),
     };
-    let direction = to_world.vector(local);
-    let direction = if direction.length() > 0.0 {
-        direction.normalize()
-    } else {
-        DVec3::X
-    };
     Ray {
         origin: to_world.point(aim - local * away),
-        direction,
+        direction: to_world.vector(local).normalize_or(DVec3::X),
     }
 }
 
@@ -169,10 +159,9 @@ fn nasty_cases(precision: Precision, seed: u64, rounds: usize) -> Vec<Case> {
     let mut cases = Vec::new();
     for round in 0..rounds {
         let kind = KINDS[round % KINDS.len()];
-        let to_world = if rng.random_bool(0.5) {
-            matrix(&mut rng)
-        } else {
-            gentle(&mut rng)
+        let to_world = match rng.random_bool(0.5) {
+            true => matrix(&mut rng),
+            false => gentle(&mut rng),
         };
         let placed = Placed::new(kind, &to_world).unwrap();
         for _ in 0..4 {
@@ -181,10 +170,8 @@ fn nasty_cases(precision: Precision, seed: u64, rounds: usize) -> Vec<Case> {
                 // From the very centre, and from far off the shape.
                 ray.origin = to_world.point(cubed(&mut rng) * decade(&mut rng, -20.0, 3.0));
             }
-            cases.push(Case {
-                placed: placed.clone(),
-                ray,
-            });
+            let placed = placed.clone();
+            cases.push(Case { placed, ray });
         }
     }
     cases
@@ -192,14 +179,12 @@ fn nasty_cases(precision: Precision, seed: u64, rounds: usize) -> Vec<Case> {
 
 /// A transform such as scenes have.
 fn gentle(rng: &mut impl Rng) -> Affine {
-    let mut rows = [[0.0; 4]; 3];
-    for (i, row) in rows.iter_mut().enumerate() {
-        for entry in row.iter_mut() {
-            *entry = rng.random_range(-1.0..1.0);
-        }
+    let rows = [0, 1, 2].map(|i| {
+        let mut row = [(); 4].map(|()| rng.random_range(-1.0..1.0));
         row[i] += 2.0;
         row[3] *= 10.0;
-    }
+        row
+    });
     Affine { rows }
 }
 
@@ -221,20 +206,16 @@ fn lanes_never_contradict_the_ladder_on_nasty_rays() {
 fn ordinary_rays_are_nearly_always_decided() {
     let mut rng = Pcg64Mcg::seed_from_u64(77);
     for precision in PRECISIONS {
-        let cases: Vec<Case> = (0..6_000)
-            .map(|round| {
-                let to_world = gentle(&mut rng);
-                let aim = to_world.point(1.5 * cubed(&mut rng));
-                let origin = to_world.point(6.0 * cubed(&mut rng));
-                Case {
-                    placed: Placed::new(KINDS[round % KINDS.len()], &to_world).unwrap(),
-                    ray: Ray {
-                        origin,
-                        direction: (aim - origin).normalize(),
-                    },
-                }
-            })
-            .collect();
+        let mut case = |round: usize| {
+            let to_world = gentle(&mut rng);
+            let aim = to_world.point(1.5 * cubed(&mut rng));
+            let origin = to_world.point(6.0 * cubed(&mut rng));
+            let direction = (aim - origin).normalize();
+            let placed = Placed::new(KINDS[round % KINDS.len()], &to_world).unwrap();
+            let ray = Ray { origin, direction };
+            Case { placed, ray }
+        };
+        let cases: Vec<Case> = (0..6_000).map(&mut case).collect();
         let record = Record::check_all(&cases, precision);
         record.assert_sound(&format!("ordinary, {precision:?}"));
         let share = record.undecided as f64 / record.asked as f64;

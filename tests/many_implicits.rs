@@ -76,20 +76,17 @@ fn hit(tracer: &Tracer, ray: Ray) -> Option<(usize, f64)> {
 fn the_first_hit_among_many_is_the_first_of_the_single_ones() {
     let scene = cloud(120, 4);
     let many = Tracer::new(&scene).unwrap();
-    let single: Vec<Tracer> = (0..scene.objects.len())
-        .map(|k| {
-            let mut alone = scene.clone();
-            alone.objects = vec![scene.objects[k].clone()];
-            Tracer::new(&alone).unwrap()
-        })
-        .collect();
+    let alone = |k: usize| {
+        let mut alone = scene.clone();
+        alone.objects = vec![scene.objects[k].clone()];
+        Tracer::new(&alone).unwrap()
+    };
+    let single: Vec<Tracer> = (0..scene.objects.len()).map(alone).collect();
     let mut hits = 0;
     for ray in rays(400) {
-        let first = single
-            .iter()
-            .enumerate()
-            .filter_map(|(k, tracer)| Some((k, hit(tracer, ray)?.1)))
-            .min_by(|a, b| a.1.total_cmp(&b.1));
+        let each = single.iter().enumerate();
+        let each = each.filter_map(|(k, tracer)| Some((k, hit(tracer, ray)?.1)));
+        let first = each.min_by(|a, b| a.1.total_cmp(&b.1));
         assert_eq!(hit(&many, ray), first, "{ray:?}");
         hits += usize::from(first.is_some());
     }

@@ -54,10 +54,8 @@ const LEVEL: f64 = 1e-4;
 
 /// The mean of many renders with a fixed number of samples, and its error.
 fn truth(ready: &mut Ready) -> Estimate {
-    let means: Vec<f64> = (0..200)
-        .map(|i| render(ready, 1_000_000 + i, 512).mean_luminance().value)
-        .collect();
-    Estimate::mean(&means)
+    let render = |i: u64| render(ready, 1_000_000 + i, 512).mean_luminance().value;
+    Estimate::mean(&(0..200).map(render).collect::<Vec<f64>>())
 }
 
 #[test]
@@ -85,11 +83,9 @@ fn a_goal_is_reached_without_bending_the_picture() {
     assert!(p > LEVEL, "biased: {stopped:?}, {truth:?}, p = {p}");
     let (mean, variance) = moments(&means);
     let error = variance.sqrt() / mean;
-    assert!(
-        (error / WANTED - 1.0).abs() < 0.2,
-        "{error} reached, {WANTED} asked for, {} spp on average",
-        samples / RENDERS
-    );
+    let spp = samples / RENDERS;
+    let words = format!("{error} reached, {WANTED} asked for, {spp} spp on average");
+    assert!((error / WANTED - 1.0).abs() < 0.2, "{words}");
 }
 
 #[test]
@@ -154,10 +150,7 @@ fn the_worst_block_reaches_its_goal_too() {
         }
         // Root of the mean square over runs, as for the picture's mean above.
         let ratio = (square / RUNS as f64).sqrt() / WANTED;
-        assert!(
-            (0.8..1.2).contains(&ratio),
-            "{sampler}: {ratio:.3} of what was asked for"
-        );
+        assert!((0.8..1.2).contains(&ratio), "{sampler}: {ratio:.3}");
     }
 }
 
@@ -180,29 +173,26 @@ fn a_goal_that_needs_more_than_can_be_had_says_so() {
 #[test]
 fn intervals_of_blocks_hold_as_often_as_they_say() {
     let size = ("size", "[64, 48]");
-    let mut survey = ready(&[
+    let survey = [
         ("sampler", "independent"),
         ("spp", "64"),
         ("replicates", "64"),
         size,
-    ]);
+    ];
+    let mut survey = ready(&survey);
     let blocks = Survey::new(&mut survey, 16).blocks();
     for sampler in ["independent", "stratified", "sobol"] {
         let mut ready = ready(&[("sampler", sampler), ("spp", "64"), size]);
         let test = |ready: &mut Ready, blocks: &[_]| {
-            (0..24)
-                .map(|render| cover(ready, render, blocks))
-                .fold(Coverage::default(), Coverage::plus)
+            let renders = (0..24).map(|render| cover(ready, render, blocks));
+            renders.fold(Coverage::default(), Coverage::plus)
         };
         let honest = test(&mut ready, &blocks).enough;
         // A binomial standard error of 1.3 % with 300 blocks, three of those, and the percentage
         // point that the threshold leaves.
         assert!(honest.all >= 300, "{honest:?}");
-        assert!(
-            (0.90..=1.0).contains(&honest.share()),
-            "{sampler}: {}",
-            honest.share()
-        );
+        let share = honest.share();
+        assert!((0.90..=1.0).contains(&share), "{sampler}: {share}");
         // A truth that is off by three standard errors is held in few.
         let mut wrong = blocks.clone();
         for block in wrong.iter_mut().flatten() {

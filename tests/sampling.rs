@@ -401,12 +401,11 @@ fn permutations_are_bijections_and_even() {
     // Where the first two elements go.
     for count in [2u32, 3, 4, 5, 7, 8, 9, 16, 25, 49] {
         let seeds = 40_000;
-        let words: Vec<[u32; 2]> = (0..seeds)
-            .flat_map(|_| {
-                let seed = rng.random();
-                [[0, seed], [1, seed]]
-            })
-            .collect();
+        let mut pair = |_| {
+            let seed = rng.random();
+            [[0, seed], [1, seed]]
+        };
+        let words: Vec<[u32; 2]> = (0..seeds).flat_map(&mut pair).collect();
         let image = image(Shuffle::Permutation(count), &words);
         let mut first = vec![0; count as usize];
         let mut both = vec![0; (count * count) as usize];

@@ -41,35 +41,34 @@ pub const FAMILIES: [Family; 5] = [
 ];
 
 impl Family {
-    pub fn name(self) -> &'static str {
+    /// Its name, what its number is, and the first and the last of the numbers as powers of ten, easy
+    /// ones first.
+    fn facts(self) -> (&'static str, &'static str, [i32; 2]) {
         match self {
-            Self::Graze => "graze",
-            Self::Distance => "distance",
-            Self::Condition => "condition",
-            Self::Gap => "gap",
-            Self::Aspect => "aspect",
+            Self::Graze => ("graze", "offset from silhouette", [-1, -14]),
+            Self::Distance => ("distance", "distance / size", [0, 9]),
+            Self::Condition => ("condition", "condition number", [0, 12]),
+            Self::Gap => ("gap", "gap between sheets", [-1, -12]),
+            Self::Aspect => ("aspect", "aspect ratio", [0, 12]),
         }
+    }
+
+    pub fn name(self) -> &'static str {
+        self.facts().0
     }
 
     /// What its number is, for an axis.
     pub fn axis(self) -> &'static str {
-        match self {
-            Self::Graze => "offset from silhouette",
-            Self::Distance => "distance / size",
-            Self::Condition => "condition number",
-            Self::Gap => "gap between sheets",
-            Self::Aspect => "aspect ratio",
-        }
+        self.facts().1
     }
 
     /// Its numbers as powers of ten, easy ones first.
     pub fn exponents(self) -> Vec<i32> {
-        match self {
-            Self::Graze => (1..=14).map(|e| -e).collect(),
-            Self::Distance => (0..=9).collect(),
-            Self::Condition | Self::Aspect => (0..=12).collect(),
-            Self::Gap => (1..=12).map(|e| -e).collect(),
-        }
+        let [first, last] = self.facts().2;
+        let harder = if first < last { 1 } else { -1 };
+        (0..=(last - first).abs())
+            .map(|i| first + harder * i)
+            .collect()
     }
 }
 
