@@ -58,7 +58,6 @@ fn render(folder: &Folder, arguments: &[&str]) -> (Picture, String) {
     (folder.picture("out.exr"), said)
 }
 
-/// The picture's bits.
 #[track_caller]
 fn render_bits(folder: &Folder, arguments: &[&str]) -> Vec<(String, Vec<u32>)> {
     bits(&render(folder, arguments).0)

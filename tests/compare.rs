@@ -22,7 +22,6 @@ const REPLICATES: usize = 8;
 /// Standard deviation of a part over the pixel's truth.
 const NOISE: f64 = 0.1;
 
-/// A picture to be drawn.
 #[derive(Clone, Copy)]
 struct Drawn {
     seed: u64,

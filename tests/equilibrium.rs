@@ -10,7 +10,6 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::support::rendered;
 
-/// Invented rooms.
 const ROOMS: u64 = 300;
 /// Probability of a false alarm of all of them together.
 const LEVEL: f64 = 1e-4;

@@ -362,7 +362,6 @@ fn sphere(normal: DVec3) -> Vec<DVec3> {
     (0..ROWS * COLUMNS).map(cell).collect()
 }
 
-/// The bin of a cell.
 fn bin(row: usize, column: usize) -> usize {
     row / BIN[0] * (COLUMNS / BIN[1]) + column / BIN[1]
 }

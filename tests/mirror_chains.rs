@@ -24,7 +24,6 @@ struct Chain {
     id: String,
     gap: f64,
     ray: Ray,
-    /// Path lengths.
     each: Vec<f64>,
 }
 

@@ -36,7 +36,6 @@ pub fn rows(file: &str) -> Vec<Row> {
     })
 }
 
-/// A column as a number.
 pub fn number(row: &Row, name: &str) -> f64 {
     row[name].parse().unwrap()
 }
@@ -46,7 +45,6 @@ pub fn vector(row: &Row, names: [&str; 3]) -> DVec3 {
     DVec3::from_array(names.map(|name| number(row, name)))
 }
 
-/// The ray of a line.
 pub fn ray(row: &Row) -> Ray {
     Ray {
         origin: vector(row, ["ox", "oy", "oz"]),

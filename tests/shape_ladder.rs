@@ -13,7 +13,6 @@ use glam::{DMat3, DQuat, DVec3};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// Every shape.
 pub const KINDS: &[ShapeKind] = ShapeKind::ALL;
 
 fn signed(rng: &mut impl Rng) -> f64 {

@@ -19,7 +19,6 @@ impl Deref for Truth {
 }
 
 impl Truth {
-    /// A number of the set-up.
     pub fn of(&self, key: &str) -> f64 {
         number(&self.0["setup"][key])
     }
@@ -29,7 +28,6 @@ impl Truth {
         keys.map(|key| self.of(key))
     }
 
-    /// An exact number.
     pub fn exact(&self, key: &str) -> f64 {
         number(&self.0["exact"][key])
     }
@@ -40,7 +38,6 @@ impl Truth {
     }
 }
 
-/// The entry of this id.
 pub fn truth(id: &str) -> Truth {
     static ALL: OnceLock<Value> = OnceLock::new();
     let all = ALL.get_or_init(|| {

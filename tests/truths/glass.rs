@@ -44,7 +44,6 @@ pub fn until(end: f64, radiance: impl Fn(f64) -> f64) -> [f64; 3] {
     sum
 }
 
-/// X, Y, Z of a spectrum.
 pub fn over_wavelengths(radiance: impl Fn(f64) -> f64) -> [f64; 3] {
     until(NM_MAX, radiance)
 }

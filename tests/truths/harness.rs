@@ -141,7 +141,6 @@ pub fn mean(estimates: &[[f64; 2]], spp: u32) -> Estimate {
     Estimate::mean_of(&values, &variances, f64::from(replicates(spp) - 1))
 }
 
-/// Replicates of a pixel.
 pub fn replicates(spp: u32) -> u32 {
     if spp < PLENTY { 2 } else { 8 }
 }

@@ -35,7 +35,6 @@ pub fn holds(operation: Operation, x: f64, y: f64, [low, high]: [f64; 2]) -> boo
     ordered(low, &*order, Ordering::Greater) && ordered(high, &*order, Ordering::Less)
 }
 
-/// What a check has found.
 #[derive(Debug, Clone, Default)]
 pub struct Report {
     /// Intervals checked on every instruction set.
@@ -49,7 +48,6 @@ pub struct Report {
 }
 
 impl Report {
-    /// Both together.
     pub fn joined(self, other: Self) -> Self {
         Self {
             checked: self.checked + other.checked,

@@ -13,7 +13,6 @@ use etalon::inside::shape::ladder::{Ladder, ScaledRay};
 use etalon::inside::shape::line::LocalRay;
 use etalon::inside::shape::{Ray, ShapeKind};
 
-/// The first hit of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct First {
     /// Where, in units of the direction.

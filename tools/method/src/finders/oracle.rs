@@ -28,7 +28,6 @@ fn at(line: usize, what: impl ToString) -> OracleError {
     OracleError::Line(line, what.to_string())
 }
 
-/// A ray with its truth.
 #[derive(Debug, Clone)]
 pub struct OracleRay {
     shape: String,
