@@ -6,11 +6,29 @@ use std::path::{Path, PathBuf};
 use etalon_method::failures;
 use etalon_method::finders::chart::{ChartError, csv, svg};
 use etalon_method::finders::map::map;
-use etalon_method::finders::{CONTESTANTS, Contestant, Oracle, Result as Outcome, run as run_one};
+use etalon_method::finders::{
+    CONTESTANTS, Contestant, Oracle, OracleError, Result as Outcome, run as run_one,
+};
 
 use super::args::Finders;
-use super::error::CommandError;
 use super::tell;
+
+/// Why a command could not be carried out; `Display` is what the user sees.
+#[derive(Debug, thiserror::Error)]
+pub enum CommandError {
+    /// A table cannot be read, or a result not written: what, which file, why.
+    #[error("error: cannot {} {}: {}", .0, .1.display(), .2)]
+    File(&'static str, PathBuf, String),
+    /// The rays or surfaces cannot be used.
+    #[error("error: {0}")]
+    Oracle(#[from] OracleError),
+    /// There is no such surface to paint.
+    #[error("error: --map: there is no surface \"{name}\"; there are {known}")]
+    Surface { name: String, known: String },
+    /// Standard output cannot be written to.
+    #[error("error: cannot write the output: {0}")]
+    Output(Error),
+}
 
 /// Charts all finders, or maps one surface; whether those that prove their answers were right.
 pub fn run(arguments: &Finders) -> Result<bool, CommandError> {
