@@ -1,34 +1,22 @@
 //! `etalon render` and `etalon info` from outside: pictures, their bits, and what is refused.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test that cannot go on has failed, and the panic says where"
-)]
-
 use std::collections::BTreeSet;
-use std::path::Path;
-use std::process::{Command, Output, Stdio};
 
-use etalon::inside::film::{exr, names};
-use etalon::{Attribute, Picture, Values};
-use tempfile::TempDir;
+use etalon::inside::film::names;
+use etalon::{Attribute, Estimate, Picture, Values};
+
+use crate::statistics_support::moments;
+use crate::support::{Folder, assert_says, attribute, value_bits, wide};
 
 /// A checkered floor, a glass ball, a mirror, a lamp and a dim sky: every kind of path.
 const SCENE: &str = r#"
 environment = 0.05
-[camera]
-from = [0, 1, 5]
-to = [0, 0.5, 0]
-fov = 40
-[image]
-size = [21, 17]
-spp = 24
-max_depth = 6
-[materials]
-floor = { checkerboard = [0.2, 0.7], cell = 1 }
-glass = { glass = "N-SF11" }
-silver = { mirror = "Ag" }
-lamp = { emit = 3 }
+camera = { from = [0, 1, 5], to = [0, 0.5, 0], fov = 40 }
+image = { size = [21, 17], spp = 24, max_depth = 6 }
+materials.floor = { checkerboard = [0.2, 0.7], cell = 1 }
+materials.glass = { glass = "N-SF11" }
+materials.silver = { mirror = "Ag" }
+materials.lamp = { emit = 3 }
 [[object]]
 name = "floor"
 shape = { rectangle = { size = [20, 20] } }
@@ -58,88 +46,33 @@ size = [5, 4]
 spp = 1
 "#;
 
-/// A directory with a scene in it.
-struct Studio {
-    directory: TempDir,
+const LAYERS: [&str; 2] = [
+    "--layers",
+    "depth,normal,object,material,spectral:400-700:50",
+];
+
+/// The picture that these arguments give, and what was said about it.
+#[track_caller]
+fn render(folder: &Folder, arguments: &[&str]) -> (Picture, String) {
+    let said = folder.done(&[&["render", "scene.toml", "-o", "out.exr"], arguments].concat());
+    (folder.picture("out.exr"), said)
 }
 
-impl Studio {
-    fn new(scene: &str) -> Self {
-        let directory = tempfile::tempdir().unwrap();
-        std::fs::write(directory.path().join("scene.toml"), scene).unwrap();
-        Self { directory }
-    }
+#[track_caller]
+fn render_bits(folder: &Folder, arguments: &[&str]) -> Vec<(String, Vec<u32>)> {
+    bits(&render(folder, arguments).0)
+}
 
-    fn path(&self) -> &Path {
-        self.directory.path()
-    }
-
-    fn command(&self, command: &str, arguments: &[&str]) -> Command {
-        let mut process = Command::new(env!("CARGO_BIN_EXE_etalon"));
-        process
-            .current_dir(self.path())
-            .args([command, "scene.toml"])
-            .args(arguments)
-            .stdin(Stdio::null());
-        process
-    }
-
-    fn run(&self, command: &str, arguments: &[&str]) -> Output {
-        self.command(command, arguments).output().unwrap()
-    }
-
-    fn read(&self, file: &str) -> Picture {
-        exr::read(&self.path().join(file)).unwrap()
-    }
-
-    /// The picture that these arguments give, and what was said about it.
-    fn render(&self, arguments: &[&str]) -> (Picture, String) {
-        let mut all = vec!["-o", "out.exr"];
-        all.extend(arguments);
-        let output = self.run("render", &all);
-        let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {complaint}");
-        let said = String::from_utf8(output.stdout).unwrap();
-        (self.read("out.exr"), said)
-    }
-
-    /// What is said when this is refused.
-    fn refused(&self, arguments: &[&str]) -> String {
-        let before = self.files();
-        let output = self.run("render", arguments);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-        assert_eq!(output.stdout, b"", "{arguments:?}");
-        assert_eq!(self.files(), before, "{arguments:?}");
-        let message = String::from_utf8(output.stderr).unwrap();
-        assert!(message.starts_with("error: "), "{message}");
-        message
-    }
-
-    fn files(&self) -> BTreeSet<String> {
-        std::fs::read_dir(self.path())
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect()
-    }
+fn refused(folder: &Folder, arguments: &[&str]) -> String {
+    folder.refused(&[&["render", "scene.toml"], arguments].concat())
 }
 
 /// Every channel's name and bits.
 fn bits(picture: &Picture) -> Vec<(String, Vec<u32>)> {
-    let bits = |values: &Values| match values {
-        Values::F32(values) => values.iter().map(|v| v.to_bits()).collect(),
-        Values::U32(values) => values.clone(),
-    };
     let channels = picture.channels.iter();
     channels
-        .map(|c| (c.name.clone(), bits(&c.values)))
+        .map(|c| (c.name.clone(), value_bits(&c.values)))
         .collect()
-}
-
-fn text<'a>(picture: &'a Picture, name: &str) -> &'a str {
-    match picture.attribute(name) {
-        Some(Attribute::Text(text)) => text,
-        other => panic!("{name} is {other:?}"),
-    }
 }
 
 /// The count that "… after 123 spp in …" names.
@@ -151,44 +84,30 @@ fn reached(said: &str) -> &str {
 
 #[test]
 fn a_picture_says_where_it_comes_from() {
-    let studio = Studio::new(SCENE);
-    let (picture, said) = studio.render(&["--set", "environment=0.1"]);
+    let folder = Folder::new(SCENE);
+    let (picture, said) = render(&folder, &["--set", "environment=0.1"]);
     assert_eq!((picture.width, picture.height), (21, 17));
     let channels: Vec<&str> = picture.channels.iter().map(|c| c.name.as_str()).collect();
-    let expected = [
-        "B",
-        "G",
-        "R",
-        "samples",
-        "standard_error.B",
-        "standard_error.G",
-        "standard_error.R",
-    ];
-    assert_eq!(channels, expected);
-    assert_eq!(picture.attribute("spp"), Some(&Attribute::Int(24)));
-    assert_eq!(picture.attribute("replicates"), Some(&Attribute::Int(2)));
-    assert_eq!(picture.attribute("maxDepth"), Some(&Attribute::Int(6)));
-    assert_eq!(text(&picture, "sceneText"), SCENE);
-    assert_eq!(text(&picture, "settings"), "environment=0.1");
-    assert_eq!(text(&picture, "sampler"), "sobol");
-    assert!(text(&picture, "plan").contains("all but one end where it is refracted by ball"));
-    assert!(text(&picture, "rungs").contains("decided in lanes of"));
-    for words in [
-        "24 spp in ",
-        "samples/s",
-        " ± ",
-        "cut off by max_depth",
-        "0 NaN",
-    ] {
-        assert!(said.contains(words), "{said}");
+    let errors = ["B", "G", "R"].map(|name| format!("standard_error.{name}"));
+    let [b, g, r] = errors.each_ref().map(String::as_str);
+    assert_eq!(channels, ["B", "G", "R", "samples", b, g, r]);
+    for (name, number) in [("spp", 24), ("replicates", 2), ("maxDepth", 6)] {
+        assert_eq!(picture.attribute(name), Some(&Attribute::Int(number)));
     }
-    assert!(studio.files().contains("out.png"));
+    assert_eq!(attribute(&picture, "sceneText"), SCENE);
+    assert_eq!(attribute(&picture, "settings"), "environment=0.1");
+    assert_eq!(attribute(&picture, "sampler"), "sobol");
+    let plan = attribute(&picture, "plan");
+    assert!(plan.contains("all but one end where it is refracted by ball"));
+    assert!(attribute(&picture, "rungs").contains("decided in lanes of"));
+    let cut = "cut off by max_depth";
+    assert_says(&said, &["24 spp in ", "samples/s", " ± ", cut, "0 NaN"]);
+    assert!(folder.files().contains("out.png"));
 }
 
 #[test]
 fn a_single_replicate_has_no_standard_error() {
-    let studio = Studio::new(SCENE);
-    let (picture, said) = studio.render(&["--spp", "1"]);
+    let (picture, said) = render(&Folder::new(SCENE), &["--spp", "1"]);
     assert!(picture.channel("standard_error.R").is_none());
     assert!(picture.attribute("standardError").is_none());
     assert!(said.contains("standard error unknown with 1 replicate"));
@@ -196,48 +115,44 @@ fn a_single_replicate_has_no_standard_error() {
 
 #[test]
 fn bits_are_the_same_on_any_threads_and_instructions() {
-    let studio = Studio::new(SCENE);
-    let layers = "depth,normal,object,material,spectral:400-700:50";
-    let reference = bits(&studio.render(&["--layers", layers]).0);
-    let again = bits(&studio.render(&["--layers", layers]).0);
-    assert_eq!(again, reference, "run twice");
+    let folder = Folder::new(SCENE);
+    let with = |arguments: &[&str]| render_bits(&folder, &[&LAYERS, arguments].concat());
+    let reference = with(&[]);
+    assert_eq!(with(&[]), reference, "run twice");
     for threads in ["1", "2", "3"] {
-        let picture = studio.render(&["--threads", threads, "--layers", layers]).0;
-        assert_eq!(bits(&picture), reference, "{threads} threads");
+        assert_eq!(with(&["--threads", threads]), reference, "{threads}");
     }
     let mut others = 0;
     for instructions in ["avx512", "avx2", "sse2"] {
-        let arguments = ["--instructions", instructions, "--layers", layers];
-        let mut all = vec!["-o", "other.exr"];
-        all.extend(arguments);
-        let output = studio.run("render", &all);
-        if output.status.code() == Some(2) {
-            let message = String::from_utf8_lossy(&output.stderr).into_owned();
-            assert!(message.contains("this machine has no"), "{message}");
+        let mut all = vec!["render", "scene.toml", "-o", "other.exr"];
+        all.extend(LAYERS);
+        all.extend(["--instructions", instructions]);
+        let said = folder.run(&all);
+        if said.code == Some(2) {
+            assert!(said.err.contains("this machine has no"), "{}", said.err);
             continue;
         }
         others += 1;
-        let picture = studio.read("other.exr");
-        assert_eq!(text(&picture, "instructions"), instructions);
+        let picture = folder.picture("other.exr");
+        assert_eq!(attribute(&picture, "instructions"), instructions);
         assert_eq!(bits(&picture), reference, "{instructions}");
     }
     assert!(others > 0 || !cfg!(target_arch = "x86_64"));
-    let other = bits(&studio.render(&["--seed", "1", "--layers", layers]).0);
-    assert_ne!(other, reference, "another seed");
+    assert_ne!(with(&["--seed", "1"]), reference, "another seed");
 }
 
 #[test]
 fn a_time_limit_gives_the_bits_of_the_count_it_reached() {
-    let studio = Studio::new(SCENE);
+    let folder = Folder::new(SCENE);
     for sampler in ["sobol", "independent", "center"] {
         // Long enough for several passes, and for replicates to grow.
-        let limited = studio.render(&["--sampler", sampler, "--time", "0.2"]);
+        let limited = render(&folder, &["--sampler", sampler, "--time", "0.2"]);
         let count = reached(&limited.1);
         assert!(count.parse::<u32>().unwrap() > 24, "{}", limited.1);
-        let counted = studio.render(&["--sampler", sampler, "--spp", count]);
-        assert_eq!(bits(&limited.0), bits(&counted.0), "{sampler} {count}");
+        let counted = render_bits(&folder, &["--sampler", sampler, "--spp", count]);
+        assert_eq!(bits(&limited.0), counted, "{sampler} {count}");
     }
-    let (_, said) = studio.render(&["--time", "100", "--spp", "5"]);
+    let (_, said) = render(&folder, &["--time", "100", "--spp", "5"]);
     assert_eq!(
         reached(&said),
         "5",
@@ -247,30 +162,25 @@ fn a_time_limit_gives_the_bits_of_the_count_it_reached() {
 
 #[test]
 fn strata_need_a_planned_count() {
-    let studio = Studio::new(SCENE);
+    let folder = Folder::new(SCENE);
     let strata = ["--sampler", "stratified", "--time", "0.05"];
-    let message = studio.refused(&strata);
+    let message = refused(&folder, &strata);
     assert!(message.contains("--time needs --spp"), "{message}");
-    let (picture, said) = studio.render(&[strata.as_slice(), &["--spp", "1000000"]].concat());
+    let planned = [&strata[..], &["--spp", "1000000"]].concat();
+    let (picture, said) = render(&folder, &planned);
     assert!(said.contains(" spp (of strata for 1000000) in "), "{said}");
-    assert_eq!(text(&picture, "sppPlanned"), "1000000");
+    assert_eq!(attribute(&picture, "sppPlanned"), "1000000");
 }
 
 #[test]
 fn a_crop_is_a_part_of_the_picture() {
-    let studio = Studio::new(SCENE);
-    let layers = [
-        "--layers",
-        "depth,normal,object,material,spectral:450-650:100",
-    ];
-    let whole = studio.render(&layers).0;
+    let folder = Folder::new(SCENE);
+    let whole = render_bits(&folder, &LAYERS);
     let (x0, y0, x1, y1) = (3, 2, 20, 17);
-    let crop = studio
-        .render(&[layers.as_slice(), &["--crop", "3,2,20,17"]].concat())
-        .0;
+    let crop = render(&folder, &[&LAYERS[..], &["--crop", "3,2,20,17"]].concat()).0;
     assert_eq!((crop.width, crop.height), (x1 - x0, y1 - y0));
-    assert_eq!(text(&crop, "crop"), "3,2,20,17 of 21x17");
-    for ((name, part), (_, all)) in bits(&crop).iter().zip(bits(&whole)) {
+    assert_eq!(attribute(&crop, "crop"), "3,2,20,17 of 21x17");
+    for ((name, part), (_, all)) in bits(&crop).iter().zip(whole) {
         let rows = (y0..y1).flat_map(|y| all[y * 21 + x0..y * 21 + x1].to_vec());
         assert_eq!(*part, rows.collect::<Vec<_>>(), "{name}");
     }
@@ -278,13 +188,14 @@ fn a_crop_is_a_part_of_the_picture() {
 
 #[test]
 fn layers_show_what_the_pixels_centre_sees() {
-    let studio = Studio::new(
-        "[camera]\nfrom = [1, 2, 8]\nto = [1, 2, 3]\nfov = 40\n[image]\nsize = [5, 5]\nspp = 1\n\
-         [materials]\nunused = { diffuse = 0 }\nwhite = { diffuse = 0.5 }\n\
+    let folder = Folder::new(
+        "camera = { from = [1, 2, 8], to = [1, 2, 3], fov = 40 }\n\
+         image = { size = [5, 5], spp = 1 }\n\
+         materials = { unused = { diffuse = 0 }, white = { diffuse = 0.5 } }\n\
          [[object]]\nshape = { sphere = { radius = 0.25 } }\nmaterial = \"white\"\n\
          transform = [{ translate = [1, 2, 3] }]\n",
     );
-    let (picture, _) = studio.render(&["--layers", "depth,normal,object,material"]);
+    let (picture, _) = render(&folder, &["--layers", "depth,normal,object,material"]);
     let at = |channel: &str, pixel: usize| picture.floats(channel).unwrap()[pixel];
     let identity = |channel: &str, pixel: usize| match &picture.channel(channel).unwrap().values {
         Values::U32(values) => values[pixel],
@@ -294,109 +205,100 @@ fn layers_show_what_the_pixels_centre_sees() {
     assert_eq!(at(names::DEPTH, centre), 4.75);
     let normal = ["N.X", "N.Y", "N.Z"].map(|channel| at(channel, centre));
     assert_eq!(normal, [0.0, 0.0, 1.0]);
-    assert_eq!(identity(names::OBJECT_ID, centre), 0);
-    assert_eq!(identity(names::MATERIAL_ID, centre), 1);
     assert_eq!(at(names::DEPTH, corner), f32::INFINITY);
     assert_eq!(at("N.Z", corner), 0.0);
-    assert_eq!(identity(names::OBJECT_ID, corner), names::NOTHING);
-    assert_eq!(identity(names::MATERIAL_ID, corner), names::NOTHING);
+    for (channel, number) in [(names::OBJECT_ID, 0), (names::MATERIAL_ID, 1)] {
+        assert_eq!(identity(channel, centre), number);
+        assert_eq!(identity(channel, corner), names::NOTHING);
+    }
 }
+
+/// Nothing but a sky of radiance 1.
+const SKY: &str = "environment = 1\n\
+                   camera = { from = [0, 0, 1], to = [0, 0, 0], fov = 40 }\n\
+                   image = { size = [16, 16], spp = 256 }\n";
 
 #[test]
 fn a_flat_environment_is_1_in_every_bin() {
-    let studio = Studio::new(
-        "environment = 1\n[camera]\nfrom = [0, 0, 1]\nto = [0, 0, 0]\nfov = 40\n\
-         [image]\nsize = [16, 16]\nspp = 256\n",
-    );
+    let folder = Folder::new(SKY);
     for wavelengths in ["4", "8"] {
-        let arguments = [
-            "--wavelengths",
-            wavelengths,
-            "--layers",
-            "spectral:365-825:10",
-        ];
-        let (picture, _) = studio.render(&arguments);
-        let bins = picture
-            .channels
-            .iter()
-            .filter(|c| c.name.starts_with("S0."));
-        let mut count = 0;
-        for bin in bins {
-            count += 1;
-            let Values::F32(values) = &bin.values else {
-                panic!("{} has no floats", bin.name);
-            };
-            let n = values.len() as f64;
-            let mean = values.iter().map(|&v| f64::from(v)).sum::<f64>() / n;
-            let squares = values.iter().map(|&v| (f64::from(v) - mean).powi(2));
-            let error = (squares.sum::<f64>() / (n * (n - 1.0))).sqrt();
+        let layers = ["--layers", "spectral:365-825:10"];
+        let (picture, _) = render(
+            &folder,
+            &[&["--wavelengths", wavelengths], &layers[..]].concat(),
+        );
+        let names = picture.channels.iter().map(|c| &c.name);
+        let names: Vec<&String> = names.filter(|name| name.starts_with("S0.")).collect();
+        assert_eq!(names.len(), 47);
+        for name in names {
+            let mean = Estimate::mean(&wide(&picture, name));
             // 94 means at five standard errors: wrong once in 2 × 10⁴ seeds, and this is one.
-            assert!(
-                (mean - 1.0).abs() < 5.0 * error,
-                "{} {mean} ± {error}",
-                bin.name
-            );
+            assert!(mean.score(1.0).abs() < 5.0, "{name} {mean}");
             // A bin is C intervals of the hero's variate, each with two edges in strata of K
             // replicates, and so at most 2 C K/4 variance of the count; at 825 nm 2.4e-4 nm⁻¹ of
             // the density makes 0.6 C counts of 256: 1.7/√C a pixel, and 256 pixels.
-            assert!(error < 0.06, "{} ± {error}", bin.name);
+            assert!(mean.standard_error < 0.06, "{name} {mean}");
         }
-        assert_eq!(count, 47);
     }
-    let message = studio.refused(&["--layers", "spectral:300-700:10"]);
+    let message = refused(&folder, &["--layers", "spectral:300-700:10"]);
     assert!(message.contains("the bin at 300 nm"), "{message}");
 }
 
 #[test]
 fn files_are_named_after_scene_and_panel() {
-    let studio = Studio::new(SCENE);
-    assert_eq!(studio.run("render", &["--spp", "1"]).status.code(), Some(0));
-    let all = studio.run("render", &["--panel", "all"]);
-    assert_eq!(all.status.code(), Some(0));
-    assert_eq!(String::from_utf8(all.stdout).unwrap().lines().count(), 2);
-    let named = ["--panel", "a", "-o", "x.y.exr", "--quiet"];
-    assert_eq!(studio.run("render", &named).status.code(), Some(0));
-    let each = ["--panel", "all", "-o", "x.y.exr"];
-    assert_eq!(studio.run("render", &each).status.code(), Some(0));
+    let folder = Folder::new(SCENE);
+    let run = |rest: &str| {
+        folder.done(
+            &format!("render scene.toml {rest}")
+                .split(' ')
+                .collect::<Vec<_>>(),
+        )
+    };
+    run("--spp 1");
+    assert_eq!(run("--panel all").lines().count(), 2);
+    run("--panel a -o x.y.exr --quiet");
+    run("--panel all -o x.y.exr");
     let stems = ["scene", "scene-a", "scene-b_c", "x.y", "x.y-a", "x.y-b_c"];
     let mut expected: BTreeSet<String> = ["scene.toml".to_owned()].into();
     for stem in stems {
         expected.extend(["exr", "png"].map(|extension| format!("{stem}.{extension}")));
     }
-    assert_eq!(studio.files(), expected);
-    let small = studio.read("scene-b_c.exr");
+    assert_eq!(folder.files(), expected);
+    let small = folder.picture("scene-b_c.exr");
     assert_eq!((small.width, small.height), (5, 4));
-    assert_eq!(text(&small, "panel"), "b/c");
+    assert_eq!(attribute(&small, "panel"), "b/c");
 }
 
 #[test]
 fn what_cannot_be_done_is_refused_before_it_is_begun() {
-    let studio = Studio::new(SCENE);
-    let long = ["--spp", "16777216"];
-    let refused = |arguments: &[&str]| studio.refused(&[arguments, long.as_slice()].concat());
-    let message = refused(&["-o", "missing/out.exr"]);
-    assert!(message.contains("missing"), "{message}");
-    std::fs::create_dir(studio.path().join("here.exr")).unwrap();
-    assert!(refused(&["-o", "here.exr"]).contains("it is a directory"));
-    assert!(refused(&["-o", "out.png"]).contains("it is OpenEXR"));
-    assert!(refused(&["-o", "./scene.toml"]).contains("that is the scene file"));
-    assert!(refused(&["--crop", "0,0,22,17"]).contains("not inside the picture of 21x17"));
-    std::fs::create_dir(studio.path().join("seen.png")).unwrap();
-    assert!(refused(&["-o", "seen.exr"]).contains("seen.png: it is a directory"));
+    let folder = Folder::new(SCENE);
+    for name in ["here.exr", "seen.png"] {
+        std::fs::create_dir(folder.path(name)).unwrap();
+    }
     let memory = ["--size", "16384x16384", "--layers", "spectral:400-800:0.1"];
-    assert!(refused(&memory).contains("MiB of memory"));
+    for (arguments, words) in [
+        (&["-o", "missing/out.exr"][..], "missing"),
+        (&["-o", "here.exr"], "it is a directory"),
+        (&["-o", "out.png"], "it is OpenEXR"),
+        (&["-o", "./scene.toml"], "that is the scene file"),
+        (&["--crop", "0,0,22,17"], "not inside the picture of 21x17"),
+        (&["-o", "seen.exr"], "seen.png: it is a directory"),
+        (&memory, "MiB of memory"),
+    ] {
+        let message = refused(&folder, &[arguments, &["--spp", "16777216"]].concat());
+        assert!(message.contains(words), "{message}");
+    }
     let plain = SCENE.split("[[panel]]").next().unwrap();
-    let message = Studio::new(plain).refused(&["--panel", "all"]);
+    let message = refused(&Folder::new(plain), &["--panel", "all"]);
     assert!(message.contains("has no panels"), "{message}");
 }
 
 #[test]
 fn info_explains_the_plan() {
-    let studio = Studio::new(SCENE);
-    let output = studio.run("info", &["--panel", "b/c"]);
-    assert_eq!(output.status.code(), Some(0));
-    let said = String::from_utf8(output.stdout).unwrap();
-    for words in [
+    let folder = Folder::new(SCENE);
+    let info = ["info", "scene.toml", "--panel", "b/c"];
+    let said = folder.done(&info);
+    let words = [
         "panel b/c: 5 × 4 pixels, 1 camera paths each",
         "1 sphere (dispersive glass)",
         "camera: no lens",
@@ -405,9 +307,8 @@ fn info_explains_the_plan() {
         "of a pixel's width there (allowed 0.01)",
         "a list of 4 objects",
         "at most 6 segments",
-    ] {
-        assert!(said.contains(words), "{words} is not in:\n{said}");
-    }
+    ];
+    assert_says(&said, &words);
     let branches = |said: &str, start: &str| {
         let line = said.lines().find(|line| line.starts_with(start)).unwrap();
         line.split_once(": ").unwrap().1.to_owned()
@@ -419,35 +320,29 @@ fn info_explains_the_plan() {
         "{said}"
     );
     // Nothing is left out of the full plan.
-    let full = studio.run("info", &["--panel", "b/c", "--plan", "full"]);
-    let full = String::from_utf8(full.stdout).unwrap();
-    assert_eq!(
-        branches(&full, "left out of the loop"),
-        "nothing, as asked for"
-    );
+    let full = folder.done(&[&info[..], &["--plan", "full"]].concat());
+    let nothing = branches(&full, "left out of the loop");
+    assert_eq!(nothing, "nothing, as asked for");
     let all = branches(&full, "in the loop");
     let branch = |name: &str| all.split(", ").any(|other| other == name);
-    assert!(
-        kept.split(", ").chain(left_out.split(", ")).all(branch),
-        "{full}"
-    );
+    let mut names = kept.split(", ").chain(left_out.split(", "));
+    assert!(names.all(branch), "{full}");
 }
 
 /// Ctrl-C, as a terminal sends it.
 #[cfg(target_os = "linux")]
 mod interrupts {
-    use std::process::Child;
+    use std::process::{Child, Command};
     use std::time::Duration;
+
+    use crate::support::Finished;
 
     use super::*;
 
     /// Starts a render that would take hours, and waits until it listens to signals.
-    fn started(studio: &Studio, arguments: &[&str]) -> Child {
-        let child = studio
-            .command("render", arguments)
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
+    fn started(folder: &Folder, arguments: &[&str]) -> Child {
+        let all = [&["render", "scene.toml", "--spp", "16777216"], arguments].concat();
+        let child = folder.command(&all).spawn().unwrap();
         while !listens(child.id()) {
             std::thread::sleep(Duration::from_millis(1));
         }
@@ -469,102 +364,89 @@ mod interrupts {
 
     #[test]
     fn the_first_keeps_what_there_is() {
-        let studio = Studio::new(SCENE);
-        let child = started(&studio, &["--spp", "16777216"]);
+        let folder = Folder::new(SCENE);
+        let child = started(&folder, &[]);
         interrupt(&child);
-        let output = child.wait_with_output().unwrap();
-        assert_eq!(output.status.code(), Some(0));
-        let said = String::from_utf8(output.stdout).unwrap();
+        let said = Finished::from(child.wait_with_output().unwrap());
+        assert_eq!(said.code, Some(0));
+        let said = said.out;
         assert!(said.contains("interrupted after "), "{said}");
-        let kept = studio.read("scene.exr");
-        let counted = studio.render(&["--spp", reached(&said)]).0;
-        assert_eq!(bits(&kept), bits(&counted));
+        let kept = folder.picture("scene.exr");
+        let counted = render_bits(&folder, &["--spp", reached(&said)]);
+        assert_eq!(bits(&kept), counted);
     }
 
     #[test]
     fn the_second_ends_at_once_and_leaves_nothing() {
-        let studio = Studio::new(SCENE);
-        let before = studio.files();
+        let folder = Folder::new(SCENE);
+        let before = folder.files();
         // The first pass alone is 4 samples of 16 million pixels.
-        let mut child = started(&studio, &["--size", "4096x4096", "--spp", "16777216"]);
+        let mut child = started(&folder, &["--size", "4096x4096"]);
         interrupt(&child);
         // Two signals at the same time are one.
         std::thread::sleep(Duration::from_millis(50));
         interrupt(&child);
         assert_eq!(child.wait().unwrap().code(), Some(130));
-        assert_eq!(studio.files(), before);
+        assert_eq!(folder.files(), before);
     }
 }
 
 /// Over independent pictures the variance of a bin is what the standard errors say it is.
 #[test]
 fn error_bars_of_bins_are_the_spread_over_seeds() {
-    let studio = Studio::new(
-        "environment = 1\n[camera]\nfrom = [0, 0, 1]\nto = [0, 0, 0]\nfov = 40\n\
-         [image]\nsize = [16, 16]\nspp = 32\nsampler = \"independent\"\n",
-    );
+    let folder = Folder::new(&SKY.replace("256 }", "32, sampler = \"independent\" }"));
     let (name, error) = ("S0.550,000000nm", "standard_error.S0.550,000000nm");
-    let layers = ["--layers", "spectral:550-550:20"];
-    let seeds: Vec<Vec<f64>> = (0..16)
-        .map(|seed| {
-            let seed = seed.to_string();
-            let arguments = [&layers[..], &["--replicates", "8", "--seed", &seed]].concat();
-            let picture = studio.render(&arguments).0;
-            let wide = |channel: &str| {
-                picture
-                    .floats(channel)
-                    .unwrap()
-                    .iter()
-                    .map(|&v| f64::from(v))
-            };
-            wide(name).chain(wide(error)).collect()
-        })
-        .collect();
+    let with = |replicates: &str, seed: &str| {
+        let arguments = [
+            "--layers",
+            "spectral:550-550:20",
+            "--replicates",
+            replicates,
+            "--seed",
+            seed,
+        ];
+        render(&folder, &arguments).0
+    };
+    let pictures: Vec<Picture> = (0..16).map(|seed| with("8", &seed.to_string())).collect();
+    let columns = [name, error].map(|name| {
+        let wide = pictures.iter().map(|picture| wide(picture, name));
+        wide.collect::<Vec<Vec<f64>>>()
+    });
     let (mut reported, mut spread) = (0.0, 0.0);
-    let n = seeds.len() as f64;
     for pixel in 0..256 {
-        let mean = seeds.iter().map(|values| values[pixel]).sum::<f64>() / n;
-        let squares = seeds.iter().map(|values| (values[pixel] - mean).powi(2));
-        spread += squares.sum::<f64>() / (n - 1.0);
-        reported += seeds
-            .iter()
-            .map(|values| values[256 + pixel].powi(2))
-            .sum::<f64>()
-            / n;
+        let [values, errors] = columns.each_ref().map(|pictures| {
+            let values = pictures.iter().map(|values| values[pixel]);
+            values.collect::<Vec<f64>>()
+        });
+        spread += moments(&values).1;
+        reported += errors.iter().map(|error| error * error).sum::<f64>() / 16.0;
     }
     // Both are χ² sums: 256 × 15 degrees of freedom, and 256 × 16 × 7. The ratio's spread is
     // √(2/3840 + 2/28672) = 0.0243 for normal values; five of them are 1 in 1.7 × 10⁶ seeds.
     let ratio = reported / spread;
     assert!((ratio - 1.0).abs() < 5.0 * 0.0243, "{ratio}");
-    let picture = studio
-        .render(&[&layers[..], &["--replicates", "1"]].concat())
-        .0;
+    let picture = with("1", "0");
     assert!(picture.channel(error).is_none() && picture.channel(name).is_some());
 }
 
 /// The sun over nothing but a plane, which has no size that a light's strength could be judged by.
 #[test]
 fn parallel_light_falls_on_a_plane_alone() {
-    let studio = Studio::new(
-        "[camera]\nfrom = [0, 1, 0]\nto = [0, 0, 0.1]\nfov = 40\n[image]\nsize = [16, 16]\nspp = 64\n\
-         [materials]\nwhite = { diffuse = 0.5 }\n\
+    let folder = Folder::new(
+        "camera = { from = [0, 1, 0], to = [0, 0, 0.1], fov = 40 }\n\
+         image = { size = [16, 16], spp = 64 }\n\
+         materials.white = { diffuse = 0.5 }\n\
          [[object]]\nshape = \"plane\"\nmaterial = \"white\"\ntransform = [{ rotate_x = -90 }]\n\
          [[light]]\ndirection = [0, -1, 0]\nirradiance = 3.141592653589793\n",
     );
-    let (picture, _) = studio.render(&["--layers", "spectral:550-550:100"]);
-    let bin = picture.floats("S0.550,000000nm").unwrap();
-    let error = picture.floats("standard_error.S0.550,000000nm").unwrap();
-    let n = bin.len() as f64;
-    let mean = bin.iter().map(|&v| f64::from(v)).sum::<f64>() / n;
-    let error = error
-        .iter()
-        .map(|&v| f64::from(v).powi(2))
-        .sum::<f64>()
-        .sqrt()
-        / n;
+    let (picture, _) = render(&folder, &["--layers", "spectral:550-550:100"]);
+    let bin = wide(&picture, "S0.550,000000nm");
+    let variances = wide(&picture, "standard_error.S0.550,000000nm");
+    let variances: Vec<f64> = variances.iter().map(|error| error * error).collect();
+    let mean = Estimate::mean_of(&bin, &variances, f64::INFINITY);
     // Lambert: 0.5 · π/π; wrong at five standard errors once in 2 × 10⁶ seeds.
     assert!(
-        error < 0.01 && (mean - 0.5).abs() < 5.0 * error,
-        "{mean} ± {error}"
+        mean.standard_error < 0.01 && mean.score(0.5).abs() < 5.0,
+        "{mean}"
     );
 }

@@ -1,23 +1,19 @@
 //! `etalon compare` from outside, on pictures whose noise is known.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a failed unwrap is a failed test, and says where"
-)]
-
 use std::path::Path;
-use std::process::{Command, Output};
 
 use etalon::inside::compare::{LEVEL, flip, judge};
 use etalon::inside::film::hash;
 use etalon::inside::film::spectral::channel_name;
 use etalon::inside::film::{exr, names};
 use etalon::inside::stats::student;
-use etalon::{Attribute, Channel, Picture, Side, Values};
+use etalon::{Attribute, Channel, Estimate, Picture, Side, Values};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::Value;
-use tempfile::TempDir;
+
+use crate::support::{Finished, Folder, assert_says};
+use crate::truth_file::{list, number};
 
 /// Edge of the pictures, pixels.
 const EDGE: usize = 32;
@@ -26,7 +22,6 @@ const REPLICATES: usize = 8;
 /// Standard deviation of a part over the pixel's truth.
 const NOISE: f64 = 0.1;
 
-/// A picture to be drawn.
 #[derive(Clone, Copy)]
 struct Drawn {
     seed: u64,
@@ -65,34 +60,21 @@ impl Drawn {
             for pixel in 0..EDGE * EDGE {
                 let (x, y) = (pixel % EDGE, pixel / EDGE);
                 let inside = x < 8 && (8..16).contains(&y);
-                let truth = self.factor
-                    * if inside { self.block } else { 1.0 }
-                    * (index + 1) as f64
-                    * (1.0 + x as f64);
-                let parts: Vec<f64> = (0..REPLICATES)
-                    .map(|_| truth * (1.0 + NOISE * normal()))
-                    .collect();
-                let count = REPLICATES as f64;
-                let mean = parts.iter().sum::<f64>() / count;
-                let squares: f64 = parts.iter().map(|p| (p - mean) * (p - mean)).sum();
-                let variance = squares / (count * (count - 1.0)) * self.told * self.told;
-                values.push(mean as f32);
-                errors.push((if variances { variance } else { variance.sqrt() }) as f32);
+                let factor = self.factor * if inside { self.block } else { 1.0 };
+                let truth = factor * (index + 1) as f64 * (1.0 + x as f64);
+                let parts = [(); REPLICATES].map(|()| truth * (1.0 + NOISE * normal()));
+                let mean = Estimate::mean(&parts);
+                let error = mean.standard_error * self.told;
+                values.push(mean.value as f32);
+                errors.push((if variances { error * error } else { error }) as f32);
             }
-            let layer = if variances {
-                "variance"
-            } else {
-                names::STANDARD_ERROR
-            };
+            let layer = ["variance", names::STANDARD_ERROR][usize::from(!variances)];
             picture.channels.push(Channel::float(name, values));
             let name = names::in_layer(layer, name);
             picture.channels.push(Channel::float(name, errors));
         }
-        set(
-            &mut picture,
-            "replicates",
-            Attribute::Int(REPLICATES as i32),
-        );
+        let replicates = Attribute::Int(REPLICATES as i32);
+        set(&mut picture, "replicates", replicates);
         picture
     }
 
@@ -110,50 +92,37 @@ fn text(text: &str) -> Attribute {
     Attribute::Text(text.to_owned())
 }
 
-/// Runs the command on two pictures in a directory of their own.
-fn compare(a: &Picture, b: Option<&Picture>, arguments: &[&str]) -> (Output, TempDir) {
-    let directory = tempfile::tempdir().unwrap();
-    exr::write(&directory.path().join("a.exr"), a).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_etalon"));
-    command
-        .current_dir(directory.path())
-        .args(["compare", "a.exr"]);
+/// Runs the command on two pictures in a folder with a scene file.
+fn compare(a: &Picture, b: Option<&Picture>, arguments: &[&str]) -> (Finished, Folder) {
+    let folder = Folder::new(SCENE);
+    let mut all = vec!["compare", "a.exr"];
+    exr::write(&folder.path("a.exr"), a).unwrap();
     if let Some(b) = b {
-        exr::write(&directory.path().join("b.exr"), b).unwrap();
-        command.arg("b.exr");
+        all.push("b.exr");
+        exr::write(&folder.path("b.exr"), b).unwrap();
     }
-    (command.args(arguments).output().unwrap(), directory)
+    all.extend(arguments);
+    (folder.run(&all), folder)
 }
 
+const SCENE: &str = "[camera]\n# another text\n";
+
+/// The exit code, and words of the answer or the message.
 #[track_caller]
-fn expect(output: &Output, code: i32, words: &[&str]) {
-    let said = format!(
-        "{}{}",
-        String::from_utf8_lossy(&output.stdout),
-        String::from_utf8_lossy(&output.stderr)
-    );
-    assert_eq!(output.status.code(), Some(code), "{said}");
-    for words in words {
-        assert!(said.contains(words), "{words:?} is not in {said}");
-    }
+fn expect(a: &Picture, b: &Picture, code: i32, words: &[&str]) {
+    let (said, _) = compare(a, Some(b), &[]);
+    assert_eq!(said.code, Some(code), "{said:?}");
+    assert_says(&(said.out + &said.err), words);
 }
 
 #[test]
 fn honest_pictures_are_consistent() {
-    let a = HONEST.picture(false);
     let b = HONEST.seed(2).picture(true);
-    let (output, directory) = compare(&a, Some(&b), &["--heatmap", "difference.png"]);
-    expect(
-        &output,
-        0,
-        &[
-            "\nconsistent",
-            "caught from a bias of",
-            "relMSE",
-            "heat map",
-        ],
-    );
-    assert!(directory.path().join("difference.png").exists());
+    let (said, folder) = compare(&HONEST.picture(false), Some(&b), &["--heatmap", "map.png"]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let caught = "caught from a bias of";
+    assert_says(&said.out, &["\nconsistent", caught, "relMSE", "heat map"]);
+    assert!(folder.path("map.png").exists());
 }
 
 /// 2 % in the mean are eleven of its standard errors here, 5 % in one block are eight.
@@ -164,34 +133,26 @@ fn a_bias_of_all_or_of_a_block_is_seen() {
         factor: 1.02,
         ..HONEST
     };
-    let (output, _directory) = compare(&all.picture(false), Some(&b), &[]);
-    expect(
-        &output,
-        1,
-        &["NOT consistent", "the image mean is off by +"],
-    );
+    let words = ["NOT consistent", "the image mean is off by +"];
+    expect(&all.picture(false), &b, 1, &words);
     let block = Drawn {
         block: 0.95,
         ..HONEST
     };
-    let (output, _directory) = compare(&block.picture(false), Some(&b), &[]);
-    expect(&output, 1, &["the block of 8x8 pixels at 0,8 is off by"]);
+    let words = ["the block of 8x8 pixels at 0,8 is off by"];
+    expect(&block.picture(false), &b, 1, &words);
 }
 
 /// Error bars that are too small show in the distribution of the blocks, not in their means.
 #[test]
 fn dishonest_error_bars_are_seen() {
-    let told = |told, seed| Drawn {
-        told,
-        seed,
+    let told = Drawn {
+        told: 0.5,
         ..HONEST
     };
-    let judged = judge(&told(0.5, 3).side(), &told(0.5, 4).side(), LEVEL).unwrap();
-    let rejected: Vec<&String> = judged.channels.iter().flat_map(|c| &c.rejected).collect();
-    assert!(
-        rejected.iter().any(|words| words.contains("distributed")),
-        "{rejected:?}"
-    );
+    let judged = judge(&told.seed(3).side(), &told.seed(4).side(), LEVEL).unwrap();
+    let mut rejected = judged.channels.iter().flat_map(|c| &c.rejected);
+    assert!(rejected.any(|words| words.contains("distributed")));
 }
 
 /// Over many honest pairs the alarms are as frequent as the level says, and what is said to be
@@ -200,9 +161,8 @@ fn dishonest_error_bars_are_seen() {
 fn level_and_power_are_as_stated() {
     let (runs, level) = (200, 0.1);
     let judged = |a: Drawn, b: Drawn| judge(&a.side(), &b.side(), level).unwrap();
-    let alarms = (0..runs)
-        .filter(|run| !judged(HONEST.seed(100 + 2 * run), HONEST.seed(101 + 2 * run)).consistent)
-        .count() as f64;
+    let honest = |run: u64| judged(HONEST.seed(100 + 2 * run), HONEST.seed(101 + 2 * run));
+    let alarms = (0..runs).filter(|run| !honest(*run).consistent).count() as f64;
     // 20 expected at most (tests of one picture are independent here), standard deviation 4.2.
     assert!((3.0..37.0).contains(&alarms), "{alarms}");
     let smallest = judged(HONEST, HONEST.seed(2)).channels[0].smallest_caught;
@@ -211,15 +171,12 @@ fn level_and_power_are_as_stated() {
         factor: 1.0 + smallest,
         ..HONEST
     };
-    let caught = (0..runs)
-        .filter(|run| {
-            let judged = judged(biased.seed(1000 + 2 * run), HONEST.seed(1001 + 2 * run));
-            judged.channels[0]
-                .rejected
-                .iter()
-                .any(|w| w.contains("mean"))
-        })
-        .count();
+    let is_caught = |run: &u64| {
+        let judged = judged(biased.seed(1000 + 2 * run), HONEST.seed(1001 + 2 * run));
+        let mut rejected = judged.channels[0].rejected.iter();
+        rejected.any(|words| words.contains("mean"))
+    };
+    let caught = (0..runs).filter(is_caught).count();
     assert!(caught >= 92, "{caught} of {runs}");
 }
 
@@ -229,12 +186,15 @@ fn a_number_can_be_the_truth() {
     let mut a = HONEST.picture(false);
     a.channels
         .retain(|c| c.name == "R" || c.name == "standard_error.R");
-    let (output, _directory) = compare(&a, None, &["--truth", "16.5"]);
-    expect(&output, 0, &["consistent"]);
-    let (output, _directory) = compare(&a, None, &["--truth", "16.6"]);
-    expect(&output, 1, &["NOT consistent"]);
-    let (output, _directory) = compare(&a, None, &[]);
-    expect(&output, 2, &["B.exr"]);
+    for (arguments, code, words) in [
+        (&["--truth", "16.5"][..], 0, "consistent"),
+        (&["--truth", "16.6"], 1, "NOT consistent"),
+        (&[], 2, "B.exr"),
+    ] {
+        let (said, _) = compare(&a, None, arguments);
+        assert_eq!(said.code, Some(code), "{said:?}");
+        assert_says(&(said.out + &said.err), &[words]);
+    }
 }
 
 #[test]
@@ -248,33 +208,29 @@ fn a_band_that_is_black_in_both_pictures_is_said_to_be() {
         }
         picture
     };
-    let (output, _directory) = compare(&dark(1), Some(&dark(2)), &[]);
-    expect(
-        &output,
-        0,
+    let (said, _) = compare(&dark(1), Some(&dark(2)), &[]);
+    assert_eq!(said.code, Some(0), "{said:?}");
+    assert_says(
+        &said.out,
         &["black in both pictures", "undefined", "consistent"],
     );
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert!(!said.contains("NaN"), "{said}");
-    assert_eq!(said.matches("black").count(), 1, "{said}");
+    assert!(!said.out.contains("NaN"), "{said:?}");
+    assert_eq!(said.out.matches("black").count(), 1, "{said:?}");
     // Black in one picture only is a difference.
-    let (output, _directory) = compare(&HONEST.picture(false), Some(&dark(2)), &[]);
-    expect(&output, 1, &["B: the image mean is off", "NOT consistent"]);
-    assert!(!String::from_utf8(output.stdout).unwrap().contains("black"));
+    let (said, _) = compare(&HONEST.picture(false), Some(&dark(2)), &[]);
+    assert_eq!(said.code, Some(1), "{said:?}");
+    assert_says(&said.out, &["B: the image mean is off", "NOT consistent"]);
+    assert!(!said.out.contains("black"), "{said:?}");
 }
 
 #[test]
 fn json_holds_everything() {
     let b = HONEST.seed(2).picture(true);
-    let (output, _directory) = compare(&HONEST.picture(false), Some(&b), &["--json"]);
-    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let (said, _) = compare(&HONEST.picture(false), Some(&b), &["--json"]);
+    let json: Value = serde_json::from_str(&said.out).unwrap();
     assert_eq!(json["judgement"]["consistent"], true);
-    let names: Vec<&str> = json["channels"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|c| c["channel"].as_str().unwrap())
-        .collect();
+    let channels = list(&json["channels"]).iter();
+    let names: Vec<&str> = channels.map(|c| c["channel"].as_str().unwrap()).collect();
     assert_eq!(names, ["R", "G", "B", channel_name(450.0).as_str()]);
     let metrics = &json["channels"][0]["metrics"];
     for name in [
@@ -289,10 +245,8 @@ fn json_holds_everything() {
     }
     // Two pictures with a noise of 0.1/√8 each: their relative squared error is 2 · 0.01/8, and the
     // variance of the reference is half of it.
-    let relmse = metrics["relmse"]["value"].as_f64().unwrap();
-    let without = metrics["relmse_without_reference_variance"]["value"]
-        .as_f64()
-        .unwrap();
+    let relmse = number(&metrics["relmse"]["value"]);
+    let without = number(&metrics["relmse_without_reference_variance"]["value"]);
     assert!((relmse / 2.5e-3 - 1.0).abs() < 0.2, "{relmse}");
     assert!((without / 1.25e-3 - 1.0).abs() < 0.3, "{without}");
 }
@@ -301,36 +255,27 @@ fn json_holds_everything() {
 fn what_cannot_be_compared_is_said() {
     let a = HONEST.picture(false);
     let b = HONEST.seed(2).picture(true);
-    let refused = |b: &Picture, words: &[&str]| {
-        let (output, _directory) = compare(&a, Some(b), &[]);
-        expect(&output, 2, words);
+    let refused = |b: &Picture, words: &[&str]| expect(&a, b, 2, words);
+    // One channel of ones, but for a pixel.
+    let ones = |edge: usize, name: &str| {
+        let mut picture = Picture::new(edge, edge);
+        picture
+            .channels
+            .push(Channel::float(name, vec![1.0; edge * edge]));
+        picture
     };
-
-    let mut small = Picture::new(4, 4);
-    small.channels.push(Channel::float("R", vec![1.0; 16]));
-    refused(&small, &["a.exr has 32x32 pixels and b.exr has 4x4"]);
-
-    let mut other = Picture::new(EDGE, EDGE);
-    other
-        .channels
-        .push(Channel::float("depth.Z", vec![1.0; EDGE * EDGE]));
-    refused(&other, &["b.exr has neither R, G, B nor spectral channels"]);
-
-    let mut bands = Picture::new(EDGE, EDGE);
-    let name = channel_name(600.0);
-    bands
-        .channels
-        .push(Channel::float(name, vec![1.0; EDGE * EDGE]));
+    refused(&ones(4, "R"), &["a.exr has 32x32 pixels and b.exr has 4x4"]);
+    let none = "b.exr has neither R, G, B nor spectral channels";
+    refused(&ones(EDGE, "depth.Z"), &[none]);
+    let bands = ones(EDGE, &channel_name(600.0));
     refused(&bands, &["share no channel", "S0.600,000000nm"]);
 
     let mut broken = b.clone();
     let mut values = vec![1.0f32; EDGE * EDGE];
     values[3 * EDGE + 5] = f32::NAN;
     broken.channels[0] = Channel::float("R", values);
-    refused(
-        &broken,
-        &["1 values that are not finite in channel R", "5,3"],
-    );
+    let words = ["1 values that are not finite in channel R", "5,3"];
+    refused(&broken, &words);
 
     let mut bare = b.clone();
     bare.channels.retain(|c| !c.name.starts_with("variance."));
@@ -347,45 +292,22 @@ fn what_cannot_be_compared_is_said() {
 
 #[test]
 fn stale_references_and_other_scenes_are_told() {
-    let scene = "[camera]\n# another text\n";
     let mut a = HONEST.picture(false);
     let mut b = HONEST.seed(2).picture(true);
     let of = |picture: &mut Picture, hash: &str| {
         set(picture, "sceneFile", text("scene.toml"));
         set(picture, "sceneHash", text(hash));
     };
-    let run = |a: &Picture, b: &Picture| {
-        let directory = tempfile::tempdir().unwrap();
-        std::fs::write(directory.path().join("scene.toml"), scene).unwrap();
-        exr::write(&directory.path().join("a.exr"), a).unwrap();
-        exr::write(&directory.path().join("b.exr"), b).unwrap();
-        let mut command = Command::new(env!("CARGO_BIN_EXE_etalon"));
-        command.current_dir(directory.path());
-        command
-            .args(["compare", "a.exr", "b.exr"])
-            .output()
-            .unwrap()
-    };
     of(&mut b, &hash("[camera]\n"));
-    expect(
-        &run(&a, &b),
-        2,
-        &["b.exr is stale", "scene.toml has changed since"],
-    );
-    of(&mut a, &hash(scene));
-    expect(
-        &run(&a, &b),
-        2,
-        &["not of the same scene file", "b.exr is stale"],
-    );
-    of(&mut b, &hash(scene));
-    expect(&run(&a, &b), 0, &["consistent"]);
+    let stale = "b.exr is stale";
+    expect(&a, &b, 2, &[stale, "scene.toml has changed since"]);
+    of(&mut a, &hash(SCENE));
+    expect(&a, &b, 2, &["not of the same scene file", stale]);
+    of(&mut b, &hash(SCENE));
+    expect(&a, &b, 0, &["consistent"]);
     set(&mut b, "panel", text("b"));
-    expect(
-        &run(&a, &b),
-        2,
-        &["a.exr is of panel none and b.exr of panel b"],
-    );
+    let panels = "a.exr is of panel none and b.exr of panel b";
+    expect(&a, &b, 2, &[panels]);
 }
 
 /// Values of the authors' own program, flip-evaluator 1.7 (`evaluate(…, "HDR", applyMagma=False)`), on
@@ -403,11 +325,8 @@ fn flip_is_that_of_its_authors() {
         ];
         let factor = 1.0 + 0.06 * (((7 * x + 13 * y) % 5) as f64 - 2.0);
         reference.push(pixel);
-        test.push([
-            pixel[0] * factor,
-            pixel[1] * factor,
-            pixel[2] * (2.0 - factor),
-        ]);
+        let [r, g, b] = pixel;
+        test.push([r * factor, g * factor, b * (2.0 - factor)]);
     }
     let map = flip(&reference, &test, width);
     let mean = map.iter().sum::<f64>() / map.len() as f64;
@@ -419,11 +338,8 @@ fn flip_is_that_of_its_authors() {
     ] {
         assert!((own / authors - 1.0).abs() < 3e-4, "{own} and {authors}");
     }
-    assert!(
-        flip(&reference, &reference, width)
-            .iter()
-            .all(|d| *d == 0.0)
-    );
+    let same = flip(&reference, &reference, width);
+    assert!(same.iter().all(|difference| *difference == 0.0));
 }
 
 /// What `compare` calls a p-value is one.
@@ -433,11 +349,8 @@ fn p_values_are_students() {
     for channel in &judged.channels {
         let score = channel.relative_bias / channel.standard_error;
         let p = student::two_sided(score, channel.freedom);
+        let found = channel.p_value;
         // Rounding of single precision is allowed for, a millionth beside an error of 0.15 %.
-        assert!(
-            (channel.p_value - p).abs() < 0.01,
-            "{} and {p}",
-            channel.p_value
-        );
+        assert!((found - p).abs() < 0.01, "{found} and {p}");
     }
 }

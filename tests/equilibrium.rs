@@ -3,21 +3,13 @@
 //! dem Absorptionsvermögen der Körper für Wärme und Licht", Annalen der Physik 185 (1860)). Rooms,
 //! objects and cameras are invented, so that no corner of a shape's light is met by luck alone.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "the tests' own scenes are right, and what they hold is known"
-)]
-
-use std::path::Path;
-
-use etalon::inside::render::{Request, Unwatched, render};
-use etalon::inside::scene;
 use etalon::inside::stats::family::sidak;
-use etalon::{Estimate, Overrides, Plan, Scene};
+use etalon::{Estimate, Plan, Scene};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// Invented rooms.
+use crate::support::rendered;
+
 const ROOMS: u64 = 300;
 /// Probability of a false alarm of all of them together.
 const LEVEL: f64 = 1e-4;
@@ -32,12 +24,11 @@ fn number(rng: &mut Pcg64Mcg, low: f64, high: f64) -> f64 {
 }
 
 fn triple(rng: &mut Pcg64Mcg, size: f64) -> String {
-    let [x, y, z] = [0; 3].map(|_| number(rng, -size, size));
-    format!("[{x}, {y}, {z}]")
+    triple_within([0.0; 3], rng, size)
 }
 
-fn triple_about(place: [f64; 3], rng: &mut Pcg64Mcg) -> String {
-    let [x, y, z] = place.map(|x| number(rng, x - 0.2, x + 0.2));
+fn triple_within(place: [f64; 3], rng: &mut Pcg64Mcg, size: f64) -> String {
+    let [x, y, z] = place.map(|x| number(rng, x - size, x + size));
     format!("[{x}, {y}, {z}]")
 }
 
@@ -51,8 +42,7 @@ fn turn(rng: &mut Pcg64Mcg) -> String {
 /// other: in glass everything would have to emit n² times as much. `lost` is what
 /// the walls fail to emit, of 1.
 fn room(number_of_room: u64, lost: f64) -> Scene {
-    let mut rng = Pcg64Mcg::seed_from_u64(number_of_room);
-    let rng = &mut rng;
+    let rng = &mut Pcg64Mcg::seed_from_u64(number_of_room);
     let reflectance = [0.2, 0.5, 0.8][rng.random_range(0..3)];
     let emission = 1.0 - reflectance - lost;
     let sky = rng.random_range(0..4) == 0;
@@ -77,7 +67,7 @@ fn room(number_of_room: u64, lost: f64) -> Scene {
         turn(rng),
         triple(rng, 1.0)
     );
-    let lens = ["", "lens = { radius = 0.1, focus = 2 }"][rng.random_range(0..2)];
+    let lens = ["", ", lens = { radius = 0.1, focus = 2 }"][rng.random_range(0..2)];
     let environment = if sky {
         format!("environment = {}", 1.0 - lost)
     } else {
@@ -86,14 +76,8 @@ fn room(number_of_room: u64, lost: f64) -> Scene {
     let mut text = format!(
         r#"
 {environment}
-[camera]
-{lens}
-from = {}
-to = {}
-fov = 70
-[image]
-size = [8, 8]
-spp = 256
+camera = {{ from = {}, to = {}, fov = 70{lens} }}
+image = {{ size = [8, 8], spp = 256 }}
 [materials]
 wall = {{ diffuse = {reflectance}, emit = {emission}, sides = "back" }}
 bright = {{ diffuse = 0.2, emit = 0.8, sides = "both" }}
@@ -102,7 +86,7 @@ mirror = {{ mirror = {{ ideal = 1 }} }}
 water = {{ glass = "water" }}
 "#,
         triple(rng, 0.3),
-        triple_about([1.0, 0.5, -1.0], rng),
+        triple_within([1.0, 0.5, -1.0], rng, 0.2),
     );
     text += &if sky {
         "[[object]]\nshape = \"plane\"\nmaterial = \"dull\"\n\
@@ -133,49 +117,47 @@ water = {{ glass = "water" }}
             "[[object]]\nshape = {{ {shape} }}\nmaterial = \"{material}\"\n\
              transform = [{{ scale = [{size}, {stretch}, {size}] }}, {}, {{ translate = {} }}]\n",
             turn(rng),
-            triple_about(
+            triple_within(
                 [0, 1, 2].map(|bit| f64::from(corner >> bit & 1) * 2.0 - 1.0),
-                rng
+                rng,
+                0.2
             ),
         );
     }
-    scene::parse("room", &text, Path::new("."), &Overrides::default()).unwrap()
+    Scene::parse(&text).unwrap()
 }
 
 fn mean(scene: &Scene) -> Estimate {
     let plan = Plan::new(scene, false).unwrap();
-    let request = Request::whole(scene.image.size, scene.image.spp);
-    let rendered = render(&plan, &request, &mut Unwatched);
-    assert_eq!(rendered.not_a_number, 0);
-    let mean = rendered.mean_luminance();
     Estimate {
-        value: mean.value,
-        standard_error: mean.standard_error,
         // At least one for each of the 64 pixels, which are scrambled on their own.
         freedom: 64.0,
+        ..rendered(scene, &plan).mean_luminance()
     }
+}
+
+/// The rooms whose walls fail to emit so much and that are told from radiance 1.
+fn noticed(lost: f64) -> Vec<String> {
+    let mut noticed = Vec::new();
+    for number in 0..ROOMS {
+        let mean = mean(&room(number, lost));
+        let p = mean.p_value(1.0, RARE);
+        if p < sidak(LEVEL, ROOMS as usize) {
+            noticed.push(format!("room {number}: {mean:?}, p = {p:.1e}"));
+        }
+    }
+    noticed
 }
 
 #[test]
 fn in_equilibrium_nothing_can_be_told_from_anything() {
-    let mut wrong = Vec::new();
-    for number in 0..ROOMS {
-        let mean = mean(&room(number, 0.0));
-        let p = mean.p_value(1.0, RARE);
-        if p < sidak(LEVEL, ROOMS as usize) {
-            wrong.push(format!("room {number}: {mean:?}, p = {p:.1e}"));
-        }
-    }
+    let wrong = noticed(0.0);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
 fn a_wall_that_emits_one_per_cent_too_little_is_noticed() {
-    let caught = (0..ROOMS)
-        .filter(|number| {
-            mean(&room(*number, 0.01)).p_value(1.0, RARE) < sidak(LEVEL, ROOMS as usize)
-        })
-        .count();
+    let caught = noticed(0.01).len();
     // Walls fill most of most pictures.
     assert!(10 * caught as u64 >= 9 * ROOMS, "{caught} of {ROOMS}");
 }

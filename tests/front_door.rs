@@ -1,14 +1,13 @@
 //! The library as its users meet it: what the tour in `src/lib.rs` does not show.
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test that cannot go on has failed, and the panic says where"
-)]
 
 use std::fs;
 use std::path::Path;
 
 use etalon::inside::scene::parse;
 use etalon::{Attribute, Goal, Overrides, Progress, Render, Scene, Target, Window};
+
+use crate::rooms::rust_files;
+use crate::support::attribute;
 
 const SCENE: &str = r#"
 environment = 0.5
@@ -27,13 +26,6 @@ material = "lamp"
 transform = [{ rotate_x = 90 }, { translate = [0, 3, 0] }]
 "#;
 
-fn text<'a>(picture: &'a etalon::Picture, name: &str) -> &'a str {
-    match picture.attribute(name) {
-        Some(Attribute::Text(text)) => text,
-        other => panic!("{name} is {other:?}"),
-    }
-}
-
 #[test]
 fn a_picture_holds_what_it_takes_to_make_it_again() {
     let mut scene = Scene::parse(SCENE).unwrap();
@@ -42,10 +34,16 @@ fn a_picture_holds_what_it_takes_to_make_it_again() {
     render.reseed(7);
     let picture = render.picture(&render.run()).unwrap();
     let over = Overrides {
-        set: Overrides::pairs(text(&picture, "settings")),
+        set: Overrides::pairs(attribute(&picture, "settings")),
         ..Overrides::default()
     };
-    let scene = parse("again", text(&picture, "sceneText"), Path::new(""), &over).unwrap();
+    let scene = parse(
+        "again",
+        attribute(&picture, "sceneText"),
+        Path::new(""),
+        &over,
+    )
+    .unwrap();
     assert_eq!((scene.image.spp, scene.image.seed), (4, 7));
     let render = Render::new(scene).unwrap();
     assert_eq!(
@@ -66,14 +64,14 @@ fn a_picture_says_where_it_comes_from_once() {
         picture.check().unwrap();
         picture
     });
-    assert_eq!(text(&unlimited, "seed"), "18446744073709551615");
+    assert_eq!(attribute(&unlimited, "seed"), "18446744073709551615");
     assert_eq!(unlimited.attribute("spp"), Some(&Attribute::Int(8)));
     assert_eq!(unlimited.attribute("nanCount"), Some(&Attribute::Int(0)));
-    assert_eq!(text(&unlimited, "maxDepth"), "unlimited");
+    assert_eq!(attribute(&unlimited, "maxDepth"), "unlimited");
     assert!(unlimited.attribute("energyCutByMaxDepth").is_none());
     let lights =
         "point light 0 by way of mirrors and glass, point light 1 by way of mirrors and glass";
-    assert_eq!(text(&unlimited, "lightsLeftOut"), lights);
+    assert_eq!(attribute(&unlimited, "lightsLeftOut"), lights);
 
     assert_eq!(limited.attribute("maxDepth"), Some(&Attribute::Int(2)));
     let cut = limited.attribute("energyCutByMaxDepth");
@@ -81,7 +79,7 @@ fn a_picture_says_where_it_comes_from_once() {
         matches!(cut, Some(Attribute::Double(share)) if (0.0..1.0).contains(share)),
         "{cut:?}"
     );
-    assert_eq!(text(&limited, "lightsLeftOut"), "none");
+    assert_eq!(attribute(&limited, "lightsLeftOut"), "none");
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
     for (name, _) in &limited.attributes {
         assert!(name.chars().all(plain), "{name}");
@@ -151,32 +149,15 @@ fn pilots_that_are_stopped_leave_everything_as_it_was() {
 /// A library's user has no terminal and no flags.
 #[test]
 fn words_of_the_library_know_no_command_line() {
-    fn search(folder: &Path, found: &mut Vec<String>) {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() && !path.ends_with("cli") {
-                search(&path, found);
-            } else if path.extension().is_some_and(|ending| ending == "rs") {
-                let text = fs::read_to_string(&path).unwrap();
-                let code = text
-                    .lines()
-                    .filter(|line| !line.trim_start().starts_with("//"));
-                let flag = |line: &str| {
-                    line.split("--")
-                        .skip(1)
-                        .any(|rest| rest.starts_with(|c: char| c.is_ascii_lowercase()))
-                };
-                found.extend(
-                    code.filter(|line| line.contains("\"error:") || flag(line))
-                        .map(|line| format!("{}: {line}", path.display())),
-                );
-            }
-        }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files = Vec::new();
+    rust_files(&root.join("src"), &mut files);
+    files.retain(|file| !file.starts_with(root.join("src/cli")));
+    let flag = |rest: &str| rest.starts_with(|c: char| c.is_ascii_lowercase());
+    for file in files {
+        let text = fs::read_to_string(&file).unwrap();
+        let mut code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
+        let found = code.find(|l| l.contains("\"error:") || l.split("--").skip(1).any(flag));
+        assert_eq!(found, None, "{}", file.display());
     }
-    let mut found = Vec::new();
-    search(
-        &Path::new(env!("CARGO_MANIFEST_DIR")).join("src"),
-        &mut found,
-    );
-    assert!(found.is_empty(), "{found:#?}");
 }

@@ -1,23 +1,16 @@
 //! Paths that leave implicit surfaces: after a long way to them, and at any scale.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "scenes that do not parse must fail the test"
-)]
-
-use std::path::Path;
-
 use etalon::inside::integrate::chunk;
 use etalon::inside::plan::explain;
-use etalon::inside::render::{Instructions, Request, Unwatched, render, replay};
-use etalon::inside::scene::parse;
-use etalon::{Overrides, Plan};
+use etalon::inside::render::{Instructions, replay};
+use etalon::{Plan, Scene};
 use glam::DVec3;
 
-fn plan(text: &str) -> (Plan, [u32; 2]) {
-    let scene = parse("scene", text, Path::new(""), &Overrides::default())
-        .unwrap_or_else(|error| panic!("{error}\n{text}"));
-    (Plan::new(&scene, false).unwrap(), scene.image.size)
+use crate::support::{pixel_bits, rendered};
+
+fn plan(text: &str) -> (Plan, Scene) {
+    let scene = Scene::parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    (Plan::new(&scene, false).unwrap(), scene)
 }
 
 /// Where the sphere is, about the camera: behind it.
@@ -27,9 +20,9 @@ const CENTRE: f64 = 3.0;
 fn seen_from_afar(distance: f64, material: &str) -> Plan {
     let text = format!(
         "environment = 1\n\
-         [camera]\nfrom = [0, 0, 0]\nto = [0, 0, -1]\nup = [0, 1, 0]\northographic = 1.9\n\
-         [image]\nsize = [16, 16]\nspp = 4\nmax_depth = 8\n\
-         [materials]\nmirror = {{ mirror = {{ ideal = 1 }} }}\nskin = {{ {material} }}\n\
+         camera = {{ from = [0, 0, 0], to = [0, 0, -1], up = [0, 1, 0], orthographic = 1.9 }}\n\
+         image = {{ size = [16, 16], spp = 4, max_depth = 8 }}\n\
+         materials = {{ mirror = {{ mirror = {{ ideal = 1 }} }}, skin = {{ {material} }} }}\n\
          [[object]]\nshape = \"plane\"\nmaterial = \"mirror\"\n\
          transform = [{{ translate = [0, 0, {:?}] }}]\n\
          [[object]]\nmaterial = \"skin\"\n\
@@ -86,7 +79,7 @@ fn rays_from_afar_leave_surfaces_as_others_do() {
 }
 
 /// A scene with lens, lamp, glass and implicit surfaces of both kinds, all lengths times a scale.
-fn scaled(scale: f64) -> Vec<[u64; 3]> {
+fn scaled(scale: f64) -> Vec<[[u64; 3]; 2]> {
     let s = |x: f64| format!("{:?}", x * scale);
     let at = |x: f64, y: f64, z: f64| format!("[{}, {}, {}]", s(x), s(y), s(z));
     let placed = |x: f64, y: f64, z: f64| {
@@ -122,18 +115,15 @@ fn scaled(scale: f64) -> Vec<[u64; 3]> {
         s(0.5),
         at(1.0, 4.0, 3.0),
     );
-    let (plan, size) = plan(&text);
-    let request = Request::whole(size, 8);
-    let rendered = render(&plan, &request, &mut Unwatched);
-    let pixels = rendered.xyz();
-    pixels.iter().map(|e| e.mean.map(f64::to_bits)).collect()
+    let (plan, scene) = plan(&text);
+    pixel_bits(&rendered(&scene, &plan))
 }
 
 /// Nothing in the program is a length of its own: powers of two change no digit.
 #[test]
 fn powers_of_two_change_no_bit() {
     let one = scaled(1.0);
-    assert!(one.iter().filter(|p| p[1] != 0).count() > 900);
+    assert!(one.iter().filter(|[mean, _]| mean[1] != 0).count() > 900);
     for scale in [1024.0, 1.0 / 128.0] {
         let other = scaled(scale);
         let different = one.iter().zip(&other).filter(|(a, b)| a != b).count();
@@ -148,9 +138,9 @@ fn powers_of_two_change_no_bit() {
 fn doubts_about_single_precision_are_said() {
     let doubt = |precision: &str, shape: &str, gap: f64| {
         let text = format!(
-            "environment = 1\n[camera]\nfrom = [0, 0, 5]\nto = [0, 0, 0]\nfov = 40\n\
-             [image]\nsize = [64, 64]\nspp = 1\nprecision = \"{precision}\"\n\
-             [materials]\nwhite = {{ diffuse = 0.5 }}\n\
+            "environment = 1\ncamera = {{ from = [0, 0, 5], to = [0, 0, 0], fov = 40 }}\n\
+             image = {{ size = [64, 64], spp = 1, precision = \"{precision}\" }}\n\
+             materials.white = {{ diffuse = 0.5 }}\n\
              [[object]]\nmaterial = \"white\"\nshape = {shape}\n\
              [[object]]\nmaterial = \"white\"\nshape = {{ sphere = {{ radius = {:?} }} }}\n",
             1.0 + gap

@@ -4,24 +4,22 @@
 use std::path::Path;
 
 use etalon::inside::field::expression::{
-    DEEPEST, LONGEST, MOST_BITS, MOST_EXPONENT, MOST_OPERATIONS, Parameter, Problem, check_name,
-    parse, parse_constant, rational,
+    DEEPEST, Expression, LONGEST, MOST_BITS, MOST_EXPONENT, MOST_OPERATIONS, Parameter, Problem,
+    check_name, parse, parse_constant, rational,
 };
 use etalon::inside::field::named::{self, SURFACES};
 use etalon::inside::field::polynomial::{MOST_DEGREE, Polynomial};
 use etalon::inside::field::tape::{Algebra, Binary, Operation, Tape, Unary};
 use etalon::inside::scene::{self, FinderChoice, Implicit, Shape};
-use etalon::{Diagnostic, Origin, Overrides};
+use etalon::{Diagnostic, Origin, Overrides, Scene};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
+use crate::oracle_support::{OracleShape, shapes};
 use crate::polynomial_support::{gradient, scaled, value};
-
-/// The surfaces of exact ray answers: name; half-width; degree; expression, parameters.
-const SHAPES: &str = include_str!("data/implicit_shapes.csv");
 
 fn ratio(numerator: i64, denominator: i64) -> BigRational {
     BigRational::new(numerator.into(), denominator.into())
@@ -88,19 +86,15 @@ fn random_point(random: &mut impl Rng) -> [BigRational; 3] {
     })
 }
 
-/// The oracle's surfaces with their degrees.
-fn shapes() -> Vec<(&'static str, u32, &'static str, Vec<Parameter>)> {
-    let rows = SHAPES.lines().skip(1).map(|line| {
-        let fields: Vec<&str> = line.split(';').collect();
-        let (text, values) = fields[3].split_once(',').unwrap_or((fields[3], ""));
-        let parameters = values.split(',').filter_map(|value| {
-            let (name, number) = value.trim().split_once('=')?;
-            Some(parameter(name, rational(number).expect("a number")))
-        });
-        let degree = fields[2].parse().expect("a degree");
-        (fields[0], degree, text, parameters.collect())
-    });
-    rows.collect()
+/// A field without parameters.
+#[track_caller]
+fn field(text: &str) -> Expression {
+    parse(text, &[]).expect(text)
+}
+
+#[track_caller]
+fn polynomial(text: &str) -> Polynomial {
+    field(text).polynomial.expect(text)
 }
 
 #[test]
@@ -154,33 +148,28 @@ fn operators_with_coordinates_bind_as_in_mathematics() {
         ("12*x^-2", 3),
     ];
     for (text, wanted) in cases {
-        let field = parse(text, &[]).expect(text);
-        assert_eq!(
-            exact(&field.tape, point()),
-            Some(ratio(wanted, 1)),
-            "{text}"
-        );
+        let value = exact(&field(text).tape, point());
+        assert_eq!(value, Some(ratio(wanted, 1)), "{text}");
     }
 }
 
 #[test]
 fn constants_are_the_rationals_they_look_like() {
     let value = |text: &str| parse_constant(text, &[]).expect(text);
-    assert_eq!(value("9/80"), ratio(9, 80));
-    assert_ne!(Some(value("9/80")), BigRational::from_float(9.0 / 80.0));
-    assert_eq!(value("0.1"), ratio(1, 10));
-    assert_eq!(value(".5e-1"), ratio(1, 20));
-    assert_eq!(value("5.E+2"), ratio(500, 1));
-    assert_eq!(value("1e-300") * value("1e300"), ratio(1, 1));
-    assert_eq!(
-        value("2^-1074"),
-        BigRational::from_float(f64::from_bits(1)).expect("finite")
-    );
+    let double = |x: f64| BigRational::from_float(x).expect("finite");
+    assert_ne!(value("9/80"), double(9.0 / 80.0));
     let golden = "1.6180339887498949025257388711906969547271728515625";
-    assert_eq!(
-        Some(value(golden)),
-        BigRational::from_float(f64::midpoint(1.0, 5f64.sqrt()))
-    );
+    for (text, wanted) in [
+        ("9/80", ratio(9, 80)),
+        ("0.1", ratio(1, 10)),
+        (".5e-1", ratio(1, 20)),
+        ("5.E+2", ratio(500, 1)),
+        ("2^-1074", double(f64::from_bits(1))),
+        (golden, double(f64::midpoint(1.0, 5f64.sqrt()))),
+    ] {
+        assert_eq!(value(text), wanted, "{text}");
+    }
+    assert_eq!(value("1e-300") * value("1e300"), ratio(1, 1));
     assert_eq!(rational("-2.5"), Some(ratio(-5, 2)));
     for text in ["", "-", ".", "1e", "e5", "1.2.3", "0x1", "nan", "1_0"] {
         assert_eq!(rational(text), None, "{text}");
@@ -205,7 +194,7 @@ fn parameters_are_constants_with_names() {
 
 #[test]
 fn equal_operations_are_done_once() {
-    let field = parse("(x^2 + y^2)*(y^2 + x*x) + 0*z + 1*x - x", &[]).expect("a field");
+    let field = field("(x^2 + y^2)*(y^2 + x*x) + 0*z + 1*x - x");
     let expected = [
         Operation::Coordinate(0),
         Operation::WholePower(0, 2),
@@ -294,6 +283,44 @@ fn complaints_point_at_their_cause() {
     }
 }
 
+/// What is written wrongly, or means nothing, is an error in words; long and deep texts too.
+#[test]
+fn senseless_expressions_are_errors() {
+    let deep = format!("{}x{}", "(".repeat(5_000), ")".repeat(5_000));
+    let long = vec!["x"; 10_000].join("*y+");
+    let minus = "-".repeat(5_000);
+    let texts = [
+        " ",
+        "0",
+        "0*x",
+        "1/0",
+        "x/0",
+        "sqrt(-1)*x",
+        "max(x, 0/0)",
+        "atan2(0, 0)*x",
+        "min(x, x) - x",
+        "x^100000",
+        "x y",
+        "3x",
+        "(x",
+        "sin x",
+        "1e",
+        "floor(x)",
+        "NaN*x",
+        "inf*x",
+        "é",
+        "x..y",
+        &deep,
+        &long,
+        &minus,
+    ];
+    for text in texts {
+        let error = parse(text, &[]).err();
+        let error = error.unwrap_or_else(|| panic!("{text:.40} is an expression"));
+        assert!(!error.to_string().is_empty());
+    }
+}
+
 #[test]
 fn constants_must_be_rational_and_without_coordinates() {
     let problem = |text| parse_constant(text, &[]).expect_err(text).problem;
@@ -330,38 +357,28 @@ fn sizes_are_bounded() {
         terms.join("+")
     };
     assert!(parse(&sines(500), &[]).is_ok());
-    assert_eq!(
-        problem(&sines(MOST_OPERATIONS / 3)),
-        Problem::TooManyOperations
-    );
-    assert_eq!(
-        problem(&format!("x^{}", MOST_EXPONENT + 1)),
-        Problem::ExponentTooLarge
-    );
+    let many = problem(&sines(MOST_OPERATIONS / 3));
+    assert_eq!(many, Problem::TooManyOperations);
+    let high = problem(&format!("x^{}", MOST_EXPONENT + 1));
+    assert_eq!(high, Problem::ExponentTooLarge);
     assert_eq!(problem("(x^33)^33"), Problem::ExponentTooLarge);
     let squares = format!("x{}", "^2".repeat(DEEPEST));
     assert_eq!(problem(&squares), Problem::TooManyDigits);
-    let power = parse_constant(&format!("2^{}", MOST_BITS - 1), &[]);
-    assert!(power.is_ok());
-    let power = parse_constant(&format!("2^{}", MOST_BITS + 1), &[]);
-    assert_eq!(
-        power.expect_err("too large").problem,
-        Problem::TooManyDigits
-    );
+    let power = |bits: u64| parse_constant(&format!("2^{bits}"), &[]);
+    assert!(power(MOST_BITS - 1).is_ok());
+    let large = power(MOST_BITS + 1).expect_err("too large").problem;
+    assert_eq!(large, Problem::TooManyDigits);
     // Long sums are no nesting.
-    assert!(
-        parse(&vec!["x"; 20_000].join("+"), &[])
-            .is_err_and(|e| { e.problem == Problem::TooManyOperations })
-    );
+    let long = vec!["x"; 20_000].join("+");
+    assert_eq!(problem(&long), Problem::TooManyOperations);
 }
 
 #[test]
 fn polynomials_beyond_measure_stay_expressions() {
-    let field = parse(&format!("(x + y + z + 1)^{MOST_DEGREE}"), &[]).expect("a field");
-    assert!(field.polynomial.is_none_or(|p| p.degree() == MOST_DEGREE));
-    let field = parse(&format!("x^{} - 1", MOST_DEGREE + 1), &[]).expect("a field");
-    assert_eq!(field.polynomial, None);
-    for text in [
+    let large = field(&format!("(x + y + z + 1)^{MOST_DEGREE}")).polynomial;
+    assert!(large.is_none_or(|p| p.degree() == MOST_DEGREE));
+    let larger = format!("x^{} - 1", MOST_DEGREE + 1);
+    let texts = [
         "sqrt(x)",
         "abs(x)",
         "1/x",
@@ -370,11 +387,12 @@ fn polynomials_beyond_measure_stay_expressions() {
         "min(x, y)",
         "pi*x",
         "x^0.3",
-    ] {
-        assert_eq!(parse(text, &[]).expect(text).polynomial, None, "{text}");
+        &larger,
+    ];
+    for text in texts {
+        assert_eq!(field(text).polynomial, None, "{text}");
     }
-    let field = parse("x/3 + y*2^-40 - sqrt(4)", &[]).expect("a field");
-    assert_eq!(field.polynomial.map(|p| p.degree()), Some(1));
+    assert_eq!(polynomial("x/3 + y*2^-40 - sqrt(4)").degree(), 1);
 }
 
 #[test]
@@ -382,9 +400,14 @@ fn all_oracle_surfaces_are_polynomials_of_their_degree() {
     let shapes = shapes();
     assert_eq!(shapes.len(), 16);
     let mut random = Pcg64Mcg::seed_from_u64(1);
-    for (name, degree, text, parameters) in shapes {
-        let field = parse(text, &parameters).expect(name);
-        let polynomial = field.polynomial.expect(name);
+    for OracleShape {
+        name,
+        degree,
+        field,
+        ..
+    } in shapes
+    {
+        let polynomial = field.polynomial.as_ref().expect(&name);
         assert_eq!(polynomial.degree(), degree, "{name}");
         let terms = polynomial.terms().collect();
         for _ in 0..20 {
@@ -398,15 +421,12 @@ fn all_oracle_surfaces_are_polynomials_of_their_degree() {
 #[test]
 fn named_surfaces_are_those_of_the_oracle() {
     let mut met = Vec::new();
-    for (name, _, text, parameters) in shapes() {
-        let surface = named::find(if name == "chmutov6" { "chmutov" } else { name });
+    for OracleShape { name, field, .. } in shapes() {
+        let surface = named::find(if name == "chmutov6" { "chmutov" } else { &name });
         let Some(surface) = surface else { continue };
-        let ours = surface.field(&[]).expect(name).polynomial.expect(name);
-        let theirs = parse(text, &parameters)
-            .expect(name)
-            .polynomial
-            .expect(name);
-        assert_eq!(scaled(&ours), scaled(&theirs), "{name}");
+        let ours = surface.field(&[]).expect(&name).polynomial;
+        let [ours, theirs] = [&ours, &field.polynomial].map(|p| scaled(p.as_ref().expect(&name)));
+        assert_eq!(ours, theirs, "{name}");
         met.push(surface.name);
     }
     assert_eq!(met.len(), SURFACES.len(), "{met:?}");
@@ -415,14 +435,11 @@ fn named_surfaces_are_those_of_the_oracle() {
 #[test]
 fn named_surfaces_take_parameters() {
     let torus = named::find("torus").expect("a torus");
-    let set = [parameter("minor", ratio(1, 1))];
     let horn = torus
-        .field(&set)
-        .expect("a torus")
-        .polynomial
-        .expect("a polynomial");
-    let wanted = parse("(x^2+y^2+z^2)^2-4*(x^2+y^2)", &[]).expect("a field");
-    assert_eq!(Some(horn), wanted.polynomial);
+        .field(&[parameter("minor", ratio(1, 1))])
+        .expect("a torus");
+    let wanted = polynomial("(x^2+y^2+z^2)^2-4*(x^2+y^2)");
+    assert_eq!(horn.polynomial, Some(wanted));
 }
 
 #[test]
@@ -432,11 +449,8 @@ fn gradients_are_limits_of_difference_quotients() {
     // derivative without any error. Here by the Lagrange polynomial in h² through d/2 + 1 points.
     let mut random = Pcg64Mcg::seed_from_u64(2);
     for surface in SURFACES {
-        let polynomial = surface
-            .field(&[])
-            .expect("a field")
-            .polynomial
-            .expect("a polynomial");
+        let field = surface.field(&[]).expect("a field");
+        let polynomial = field.polynomial.expect("a polynomial");
         let (terms, gradient) = (polynomial.terms().collect(), gradient(&polynomial));
         let point = random_point(&mut random);
         for axis in 0..3 {
@@ -475,62 +489,38 @@ fn polynomials_are_in_lowest_terms_and_keep_their_sign() {
     assert_eq!(*polynomial.denominator(), 12.into());
     let whole = BigInt::from;
     assert!(Polynomial::new([], 1.into()).is_zero());
-    assert_eq!(
-        Polynomial::new([([1, 0, 0], whole(2))], whole(-4)),
-        Polynomial::new([([1, 0, 0], whole(-1))], whole(2)),
-    );
+    let over = |a, b| Polynomial::new([([1, 0, 0], whole(a))], whole(b));
+    assert_eq!(over(2, -4), over(-1, 2));
 }
 
 #[test]
 fn powers_products_and_differences_of_squares_come_apart() {
     let parts = |text: &str| {
-        let field = parse(text, &[]).expect(text);
-        let factors = field.tape.factors();
+        let factors = field(text).tape.factors();
         let list = factors.factors.iter().map(|f| {
             let polynomial = Polynomial::from_tape(&f.tape).expect(text);
             (polynomial, f.multiplicity)
         });
         (factors.negative, list.collect::<Vec<_>>())
     };
-    let wanted = |negative: bool, list: &[(&str, u32)]| {
-        let list = list.iter().map(|(text, n)| {
-            let polynomial = parse(text, &[]).expect(text).polynomial;
-            (polynomial.expect("a polynomial"), *n)
-        });
-        (negative, list.collect::<Vec<_>>())
-    };
     let sphere = "x^2+y^2+z^2-1";
-    assert_eq!(
-        parts(&format!("({sphere})^2")),
-        wanted(false, &[(sphere, 2)])
-    );
-    assert_eq!(
-        parts(&format!("-3*({sphere})^3*x")),
-        wanted(true, &[("x", 1), (sphere, 3)])
-    );
-    assert_eq!(
-        parts(&format!("({sphere})*x*({sphere})")),
-        wanted(false, &[(sphere, 2), ("x", 1)])
-    );
-    for text in ["(s)^2-2^-40", "-2^-40+(s)^2"] {
-        let shells = [("x^2+y^2+z^2-1-2^-20", 1), ("x^2+y^2+z^2-1+2^-20", 1)];
-        assert_eq!(
-            parts(&text.replace('s', sphere)),
-            wanted(false, &shells),
-            "{text}"
-        );
+    let shells = [("x^2+y^2+z^2-1-2^-20", 1), ("x^2+y^2+z^2-1+2^-20", 1)];
+    for (text, negative, list) in [
+        ("(s)^2", false, &[(sphere, 2)][..]),
+        ("-3*(s)^3*x", true, &[("x", 1), (sphere, 3)]),
+        ("(s)*x*(s)", false, &[(sphere, 2), ("x", 1)]),
+        ("(s)^2-2^-40", false, &shells),
+        ("-2^-40+(s)^2", false, &shells),
+        ("x^4-y^2", false, &[("x^2-y", 1), ("x^2+y", 1)]),
+        ("(x^2-y^2)^3/-7", true, &[("x-y", 3), ("x+y", 3)]),
+        // √2 is not rational, and a sum of squares stays.
+        ("x^2-2", false, &[("x^2-2", 1)]),
+        ("x^2+4", false, &[("x^2+4", 1)]),
+    ] {
+        let list = list.iter().map(|(text, n)| (polynomial(text), *n));
+        let wanted = (negative, list.collect::<Vec<_>>());
+        assert_eq!(parts(&text.replace('s', sphere)), wanted, "{text}");
     }
-    assert_eq!(
-        parts("x^4-y^2"),
-        wanted(false, &[("x^2-y", 1), ("x^2+y", 1)])
-    );
-    assert_eq!(
-        parts("(x^2-y^2)^3/-7"),
-        wanted(true, &[("x-y", 3), ("x+y", 3)])
-    );
-    // √2 is not rational, and a sum of squares stays.
-    assert_eq!(parts("x^2-2"), wanted(false, &[("x^2-2", 1)]));
-    assert_eq!(parts("x^2+4"), wanted(false, &[("x^2+4", 1)]));
 }
 
 #[test]
@@ -551,10 +541,8 @@ fn random_words_never_panic() {
             Ok(field) => {
                 fields += 1;
                 assert_eq!(field.spans.len(), field.tape.operations().len());
-                assert!(
-                    field.spans.iter().all(|s| text.get(s.clone()).is_some()),
-                    "{text}"
-                );
+                let mut spans = field.spans.iter();
+                assert!(spans.all(|s| text.get(s.clone()).is_some()), "{text}");
                 let _ = field.tape.factors();
             }
             Err(error) => {
@@ -569,8 +557,9 @@ fn random_words_never_panic() {
 /// A scene with one implicit surface.
 fn scene_of(shape: &str) -> String {
     format!(
-        "[camera]\nfrom = [0, 0, 5]\nto = [0, 0, 0]\nfov = 40\n[image]\nsize = [8, 8]\nspp = 1\n\
-         [materials]\nblack = {{}}\n[[object]]\nmaterial = \"black\"\n{shape}\n"
+        "camera = {{ from = [0, 0, 5], to = [0, 0, 0], fov = 40 }}\n\
+         image = {{ size = [8, 8], spp = 1 }}\n\
+         materials.black = {{}}\n[[object]]\nmaterial = \"black\"\n{shape}\n"
     )
 }
 
@@ -596,22 +585,16 @@ fn scene_files_name_surfaces_or_write_them() {
     let (name, torus) = read(r#"shape = { implicit = "torus" }"#, None).expect("a torus");
     assert_eq!((name.as_str(), torus.name), ("torus #0", Some("torus")));
     assert_eq!(torus.inside.map(|p| p.to_array()), [[-2.0; 3], [2.0; 3]]);
-    assert_eq!(
-        (torus.closed, torus.finder, torus.steps),
-        (false, FinderChoice::Auto, 1000)
-    );
+    let defaults = (torus.closed, torus.finder, torus.steps);
+    assert_eq!(defaults, (false, FinderChoice::Auto, 1000));
 
     let shape = r#"shape = { implicit = "a*x^2 + b*y - c", inside = [[0, 0, 0], [1, 2, 3]],
         parameters = { a = 0.1, b = "a*9/8", c = 1_0.5e0 } }"#;
     let (name, field) = read(shape, None).expect("a field");
-    assert_eq!(
-        (name.as_str(), field.name, field.closed),
-        ("implicit #0", None, false)
-    );
-    let wanted = parse("x^2/10 + 9/80*y - 21/2", &[])
-        .expect("a field")
-        .polynomial;
-    assert_eq!(field.field.polynomial, wanted);
+    let told = (name.as_str(), field.name, field.closed);
+    assert_eq!(told, ("implicit #0", None, false));
+    let wanted = polynomial("x^2/10 + 9/80*y - 21/2");
+    assert_eq!(field.field.polynomial, Some(wanted));
     // Caps make it the largest of several fields.
     let closed = shape.replace("} }", "}, closed = true }");
     let (_, field) = read(&closed, None).expect("a field");
@@ -623,17 +606,15 @@ fn finders_are_the_object_s_else_the_image_s_unless_the_command_says() {
     let finder = |shape: &str, command| Some(read(shape, command).ok()?.1.finder);
     let own = r#"shape = { implicit = "heart", finder = "interval" }"#;
     let plain = r#"shape = { implicit = "heart" }"#;
-    assert_eq!(finder(own, None), Some(FinderChoice::Interval));
-    assert_eq!(
-        finder(own, Some("sign-change")),
-        Some(FinderChoice::SignChange)
-    );
-    assert_eq!(
-        finder(plain, Some("polynomial")),
-        Some(FinderChoice::Polynomial)
-    );
-    let text = scene_of(plain).replace("spp = 1", "spp = 1\nfinder = \"sphere-trace\"");
-    let scene = scene::parse("test.toml", &text, Path::new(""), &Overrides::default());
+    for (shape, command, wanted) in [
+        (own, None, FinderChoice::Interval),
+        (own, Some("sign-change"), FinderChoice::SignChange),
+        (plain, Some("polynomial"), FinderChoice::Polynomial),
+    ] {
+        assert_eq!(finder(shape, command), Some(wanted));
+    }
+    let text = scene_of(plain).replace("spp = 1", "spp = 1, finder = \"sphere-trace\"");
+    let scene = Scene::parse(&text);
     let Shape::Implicit(heart) = &scene.expect("a scene").objects[0].value.shape else {
         panic!("no implicit surface");
     };
@@ -679,7 +660,7 @@ fn complaints_point_into_the_string_of_the_scene_file() {
         let line = before.rsplit('\n').next().unwrap_or("");
         assert!(error.message.contains(message), "{error}");
         assert_eq!(error.column, line.chars().count() + 1, "{error}");
-        assert_eq!(error.line, 12 + before.matches('\n').count(), "{error}");
+        assert_eq!(error.line, 6 + before.matches('\n').count(), "{error}");
     }
     let error = read(
         &format!("shape = {{ implicit = \"sqr(x)\", {inside} }}"),

@@ -1,28 +1,27 @@
 //! Fields of implicit surfaces in f64 and in lanes: values, gradients, and normals where the
 //! gradient vanishes.
 
-use std::sync::Arc;
-
 use etalon::inside::field::bounded;
 use etalon::inside::field::evaluate::{Field, nearest};
 use etalon::inside::field::expression::{Expression, parse};
 use etalon::inside::field::named::{self, SURFACES};
 use etalon::inside::field::normal::outward;
 use etalon::inside::math::affine::Affine;
-use etalon::inside::scene::{FinderChoice, Implicit};
+use etalon::inside::scene::FinderChoice;
+use etalon::inside::shape::Tally;
 use etalon::inside::shape::implicit::certified::Workspace;
 use etalon::inside::shape::implicit::placed::{ImplicitAnswer, PlacedImplicit};
-use etalon::inside::shape::{Query, Ray, Tally};
 use etalon_doors::fields::values_and_gradients;
 use glam::DVec3;
 use num_bigint::BigInt;
 use num_rational::BigRational;
-use num_traits::ToPrimitive;
+use num_traits::{Signed, ToPrimitive};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::{PRECISIONS, Precision, everywhere};
 use crate::polynomial_support::{gradient, value};
+use crate::support::{from_zero, implicit};
 
 fn expression(text: &str) -> Expression {
     parse(text, &[]).expect(text)
@@ -37,8 +36,7 @@ fn exact(x: f64) -> BigRational {
 }
 
 fn random_point(random: &mut impl Rng, size: f64) -> DVec3 {
-    let [x, y, z] = [(); 3].map(|()| random.random_range(-size..size));
-    DVec3::new(x, y, z)
+    [(); 3].map(|()| random.random_range(-size..size)).into()
 }
 
 #[test]
@@ -51,25 +49,13 @@ fn constants_are_rounded_to_nearest() {
         });
         let value = BigRational::new(a, b);
         let rounded = nearest(&value);
-        let off = |x: f64| (exact(x) - &value).abs_value();
+        let off = |x: f64| (exact(x) - &value).abs();
         assert!(off(rounded) <= off(rounded.next_up()), "{value}");
         assert!(off(rounded) <= off(rounded.next_down()), "{value}");
     }
     assert_eq!(nearest(&BigRational::new(9.into(), 80.into())), 9.0 / 80.0);
-    assert_eq!(
-        nearest(&exact(f64::MIN_POSITIVE / 8.0)),
-        f64::MIN_POSITIVE / 8.0
-    );
-}
-
-trait AbsoluteValue {
-    fn abs_value(self) -> Self;
-}
-
-impl AbsoluteValue for BigRational {
-    fn abs_value(self) -> Self {
-        num_traits::Signed::abs(&self)
-    }
+    let subnormal = f64::MIN_POSITIVE / 8.0;
+    assert_eq!(nearest(&exact(subnormal)), subnormal);
 }
 
 /// Automatic differentiation against the exact gradient of the polynomial, within the bound that
@@ -94,11 +80,8 @@ fn gradients_of_named_surfaces_are_exact_but_for_rounding() {
             let limit = error + f64::EPSILON * wanted.length();
             assert!(off <= limit, "{}: {off} > {limit}", surface.name);
             // Some hundred operations on numbers up to some thousands: far below this.
-            assert!(
-                error < 1e-9 * (1.0 + wanted.length()),
-                "{}: {error}",
-                surface.name
-            );
+            let most = 1e-9 * (1.0 + wanted.length());
+            assert!(error < most, "{}: {error}", surface.name);
         }
     }
 }
@@ -142,10 +125,8 @@ fn rules_of_differentiation_agree_with_differences() {
         for _ in 0..50 {
             let p = random_point(&mut random, 1.0);
             // Where a minimum or an absolute value bends there is no derivative.
-            if (p.x - p.y).abs() < 1e-3
-                || (p.x * p.y).abs() < 1e-3
-                || (p.x - p.y * p.z).abs() < 1e-3
-            {
+            let bends = [p.x - p.y, p.x * p.y, p.x - p.y * p.z];
+            if bends.iter().any(|x| x.abs() < 1e-3) {
                 continue;
             }
             let h = 1e-5;
@@ -176,12 +157,11 @@ fn lanes_compute_what_scalars_do() {
                 None => expression(text),
             };
             let field = Field::new(&expression.tape);
-            let points: Vec<DVec3> = (0..64)
-                .map(|_| {
-                    let p = random_point(&mut random, 1.0);
-                    DVec3::from_array(p.to_array().map(|x| precision.rounded(x)))
-                })
-                .collect();
+            let mut point = |_| {
+                let p = random_point(&mut random, 1.0);
+                DVec3::from_array(p.to_array().map(|x| precision.rounded(x)))
+            };
+            let points: Vec<DVec3> = (0..64).map(&mut point).collect();
             let columns =
                 [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).collect::<Vec<f64>>());
             let [x, y, z] = &columns;
@@ -212,11 +192,8 @@ fn lanes_compute_what_scalars_do() {
 /// that is s = (x² + 9/80 y²)^⅓ z: smooth, with the gradient (2x, 9/2 y, −(x² + 9/80 y²)^⅓).
 #[test]
 fn the_heart_has_its_normal_where_the_gradient_vanishes() {
-    let heart = named::find("heart")
-        .expect("a heart")
-        .field(&[])
-        .expect("a field");
-    let field = Field::new(&heart.tape);
+    let heart = named::find("heart").expect("a heart");
+    let field = Field::new(&heart.field(&[]).expect("a field").tape);
     let mut random = Pcg64Mcg::seed_from_u64(5);
     for _ in 0..200 {
         let angle: f64 = random.random_range(0.0..std::f64::consts::TAU);
@@ -243,27 +220,19 @@ fn the_heart_has_its_normal_where_the_gradient_vanishes() {
 fn normals_are_finite_everywhere() {
     let mut random = Pcg64Mcg::seed_from_u64(6);
     let half = 0.5_f64.sqrt();
+    let heart = "(x^2 + 9/4*y^2 + z^2 - 1)^3 - x^2*z^3 - 9/80*y^2*z^3";
+    let roman = "x^2*y^2 + y^2*z^2 + z^2*x^2 - x*y*z";
+    let square = "(x^2 + y^2 + z^2 - 1)^2";
+    let quartic = "x^4+y^4+z^4-x^2-y^2-z^2-x^2*y^2-y^2*z^2-z^2*x^2+1";
     let cases = [
-        (
-            "(x^2 + 9/4*y^2 + z^2 - 1)^3 - x^2*z^3 - 9/80*y^2*z^3",
-            DVec3::Z,
-        ),
-        (
-            "(x^2 + 9/4*y^2 + z^2 - 1)^3 - x^2*z^3 - 9/80*y^2*z^3",
-            -DVec3::Z,
-        ),
+        (heart, DVec3::Z),
+        (heart, -DVec3::Z),
         ("(x^2 + y^2 + z^2)^2 - 4*(x^2 + y^2)", DVec3::ZERO),
-        (
-            "x^4+y^4+z^4-x^2-y^2-z^2-x^2*y^2-y^2*z^2-z^2*x^2+1",
-            DVec3::ONE,
-        ),
-        (
-            "x^2*y^2 + y^2*z^2 + z^2*x^2 - x*y*z",
-            DVec3::new(0.25, 0.0, 0.0),
-        ),
-        ("x^2*y^2 + y^2*z^2 + z^2*x^2 - x*y*z", DVec3::ZERO),
-        ("(x^2 + y^2 + z^2 - 1)^2", DVec3::new(half, half, 0.0)),
-        ("(x^2 + y^2 + z^2 - 1)^2", DVec3::X),
+        (quartic, DVec3::ONE),
+        (roman, DVec3::new(0.25, 0.0, 0.0)),
+        (roman, DVec3::ZERO),
+        (square, DVec3::new(half, half, 0.0)),
+        (square, DVec3::X),
         ("x^2 + y^2 - z^2", DVec3::ZERO),
         ("x^2 + y^2 + z^2", DVec3::ZERO),
         ("sqrt(x)", DVec3::ZERO),
@@ -278,10 +247,8 @@ fn normals_are_finite_everywhere() {
             let random_direction = random_point(&mut random, 1.0);
             for direction in [axis, random_direction] {
                 let normal = outward(&field, p, direction, 4.0);
-                assert!(
-                    (normal.length() - 1.0).abs() < 1e-14,
-                    "{text} at {p}: {normal}"
-                );
+                let off = (normal.length() - 1.0).abs();
+                assert!(off < 1e-14, "{text} at {p}: {normal}");
             }
         }
     }
@@ -303,24 +270,10 @@ fn squares_have_normals_that_face_the_ray() {
 fn closed_surfaces_have_caps() {
     let inside = [-DVec3::ONE, DVec3::ONE];
     let open = expression("x^2 + y^2 - z^2/2 - 1/5");
-    let first = |field: Expression, inside: [DVec3; 2], origin: DVec3| {
-        let implicit = Implicit {
-            name: None,
-            field: Arc::new(field),
-            inside,
-            closed: false,
-            finder: FinderChoice::Auto,
-            steps: 256,
-        };
+    let first = |field: Expression, half: f64, z: f64| {
+        let implicit = implicit(field, half, FinderChoice::Auto);
         let placed = PlacedImplicit::new(&implicit, &Affine::IDENTITY).expect("a regular matrix");
-        let query = Query {
-            ray: Ray {
-                origin,
-                direction: DVec3::NEG_Z,
-            },
-            t_min: 0.0,
-            t_max: f64::INFINITY,
-        };
+        let query = from_zero(DVec3::new(0.1, 0.2, z), DVec3::NEG_Z);
         let (mut workspace, mut tally) = (Workspace::default(), Tally::default());
         match placed.first_hit(&query, &mut workspace, &mut tally) {
             ImplicitAnswer::Found(hit) => Some((hit.t, hit.normal)),
@@ -328,13 +281,10 @@ fn closed_surfaces_have_caps() {
             ImplicitAnswer::Undecided => panic!("undecided"),
         }
     };
-    let origin = DVec3::new(0.1, 0.2, 5.0);
-    assert_eq!(first(open.clone(), inside, origin), None);
+    assert_eq!(first(open.clone(), 1.0, 5.0), None);
     let capped = open.capped(&inside).expect("finite corners");
-    let room = [inside[0] * 1.125, inside[1] * 1.125];
     for (z, t, up) in [(5.0, 4.0, 1.0), (0.5, 1.5, -1.0)] {
-        let origin = DVec3::new(0.1, 0.2, z);
-        let Some((found, normal)) = first(capped.clone(), room, origin) else {
+        let Some((found, normal)) = first(capped.clone(), 1.125, z) else {
             panic!("the cap is missing");
         };
         assert!((found - t).abs() < 1e-14, "{found}");

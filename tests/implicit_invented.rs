@@ -2,11 +2,6 @@
 //! some closer than f64 can tell, complex pairs next to the real line, and leading coefficients
 //! large and small.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "chosen numbers are finite and fields are polynomials"
-)]
-
 use etalon::inside::field::tape::{Binary, Operation, Tape};
 use etalon::inside::math::affine::Affine;
 use etalon::inside::shape::implicit::certified::{Answers, Certified, Effort, Packet, Workspace};

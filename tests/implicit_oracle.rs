@@ -3,68 +3,70 @@
 //! `tests/data/implicit_shapes.csv` (16 surfaces), `implicit.csv` (3 040 rays, each meant exactly as its f64
 //! numbers, t to 22 digits), `bounce.csv` (331 second hits).
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a malformed oracle file must fail the test"
-)]
-
 use std::collections::{BTreeMap, HashMap};
 
 use etalon::inside::field::normal::SHARP;
 use etalon::inside::math::affine::Affine;
-use etalon::inside::scene::{FinderChoice, Implicit};
+use etalon::inside::scene::FinderChoice;
+use etalon::inside::shape::Query;
+use etalon::inside::shape::Tally;
 use etalon::inside::shape::implicit::certified::{
     Answers, Certified, Effort, Packet, WIDTH, Workspace,
 };
 use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitHit, PlacedImplicit};
-use etalon::inside::shape::{Query, Ray, Tally};
 use etalon::{Instructions, Tier};
 use etalon_doors::shapes::without_bounds;
 
-use crate::oracle_support::{IMPLICIT, OracleShape, Row, number, rows, shapes, vector};
+use crate::oracle_support::{Row, number, ray, rows, shapes, vector};
+use crate::support::{from_zero, implicit};
 
+/// A surface in both forms, and half its cube's edge.
 struct Surface {
-    implicit: Implicit,
+    placed: PlacedImplicit,
+    certified: Certified,
     half: f64,
 }
 
-fn surfaces() -> BTreeMap<String, Surface> {
-    let surface = |shape: OracleShape| {
-        let implicit = Implicit {
-            name: None,
-            inside: shape.inside(),
-            field: shape.field,
-            closed: false,
-            finder: FinderChoice::Auto,
-            steps: 256,
-        };
+type Surfaces = BTreeMap<String, Surface>;
+
+fn surfaces(finder: FinderChoice) -> Surfaces {
+    let surface = |shape: crate::oracle_support::OracleShape| {
         let half = shape.half_width;
-        (shape.name, Surface { implicit, half })
+        let implicit = implicit(shape.field, half, finder);
+        let (tape, to_world) = (&implicit.field.tape, &Affine::IDENTITY);
+        let certified = Certified::new(tape, implicit.inside, to_world).unwrap();
+        let surface = Surface {
+            placed: PlacedImplicit::new(&implicit, to_world).unwrap(),
+            certified: certified.unwrap(),
+            half,
+        };
+        (shape.name, surface)
     };
     shapes().into_iter().map(surface).collect()
 }
 
-fn placed(finder: FinderChoice) -> BTreeMap<String, (PlacedImplicit, f64)> {
-    surfaces()
-        .into_iter()
-        .map(|(name, Surface { mut implicit, half })| {
-            implicit.finder = finder;
-            let placed = PlacedImplicit::new(&implicit, &Affine::IDENTITY).unwrap();
-            (name, (placed, half))
-        })
-        .collect()
-}
-
 fn query(row: &Row) -> Query {
     Query {
-        ray: Ray {
-            origin: vector(row, ["ox", "oy", "oz"]),
-            direction: vector(row, ["dx", "dy", "dz"]),
-        },
+        ray: ray(row),
         t_min: number(row, "tmin"),
         t_max: f64::INFINITY,
     }
 }
+
+/// Rays in the lanes of a packet.
+fn packet(queries: impl IntoIterator<Item = Query>) -> Packet {
+    let mut packet = Packet::default();
+    for (lane, Query { ray, t_min, t_max }) in queries.into_iter().enumerate() {
+        packet.set(lane, ray.origin, ray.direction, [t_min, t_max]);
+    }
+    packet
+}
+
+/// What the path loop asks for.
+const HITS: Effort = Effort {
+    sharp: false,
+    exact: true,
+};
 
 /// What is wrong with an answer, if anything.
 fn fault(row: &Row, answer: &ImplicitAnswer, half: f64) -> Option<String> {
@@ -82,22 +84,15 @@ fn fault(row: &Row, answer: &ImplicitAnswer, half: f64) -> Option<String> {
     if !(low <= t && t <= high && low <= hit.t && hit.t <= high) {
         return Some(format!("{t} and {} in {:?}", hit.t, hit.enclosure));
     }
-    let clip = 2.0 * half / vector(row, ["dx", "dy", "dz"]).length();
+    let clip = 2.0 * half / ray(row).direction.length();
     let separated = row["gap"].is_empty() || number(row, "gap") > 1e-3 * clip;
-    if row["mult"] == "1" && separated && (hit.t - t).abs() > 1e-12 * clip {
-        return Some(format!(
-            "t off by {:e} of the clip",
-            (hit.t - t).abs() / clip
-        ));
+    let off = (hit.t - t).abs() / clip;
+    if row["mult"] == "1" && separated && off > 1e-12 {
+        return Some(format!("t off by {off:e} of the clip"));
     }
-    let known = hit
-        .multiplicity
-        .is_none_or(|m| m.to_string() == row["mult"]);
-    if !known {
-        return Some(format!(
-            "multiplicity {:?}, want {}",
-            hit.multiplicity, row["mult"]
-        ));
+    let (told, wanted) = (hit.multiplicity, &row["mult"]);
+    if told.is_some_and(|told| told.to_string() != *wanted) {
+        return Some(format!("multiplicity {told:?}, want {wanted}"));
     }
     normal_fault(row, hit)
 }
@@ -117,26 +112,22 @@ fn normal_fault(row: &Row, hit: &ImplicitHit) -> Option<String> {
 
 /// Faults and tally of all rays, the same on every instruction set.
 fn trace(finder: FinderChoice) -> (Vec<String>, Tally) {
-    let surfaces = placed(finder);
-    let all = Instructions::all().into_iter();
-    let mut each = all.map(|instructions| trace_on(instructions, &surfaces));
+    let surfaces = surfaces(finder);
+    let trace_on = |instructions| {
+        let (mut workspace, mut tally) = (Workspace::new(instructions), Tally::default());
+        let mut faults = Vec::new();
+        for row in &rows("implicit.csv") {
+            let Surface { placed, half, .. } = &surfaces[&row["shape"]];
+            let answer = placed.first_hit(&query(row), &mut workspace, &mut tally);
+            let fault = fault(row, &answer, *half);
+            faults.extend(fault.map(|fault| format!("{}: {fault}", row["id"])));
+        }
+        (faults, tally)
+    };
+    let mut each = Instructions::all().into_iter().map(trace_on);
     let first = each.next().unwrap();
     assert!(each.all(|other| other == first));
     first
-}
-
-fn trace_on(
-    instructions: Instructions,
-    surfaces: &BTreeMap<String, (PlacedImplicit, f64)>,
-) -> (Vec<String>, Tally) {
-    let (mut workspace, mut tally) = (Workspace::new(instructions), Tally::default());
-    let mut faults = Vec::new();
-    for row in &rows(IMPLICIT) {
-        let (surface, half) = &surfaces[&row["shape"]];
-        let answer = surface.first_hit(&query(row), &mut workspace, &mut tally);
-        faults.extend(fault(row, &answer, *half).map(|fault| format!("{}: {fault}", row["id"])));
-    }
-    (faults, tally)
 }
 
 #[test]
@@ -144,10 +135,8 @@ fn every_ray_is_decided_and_right() {
     let (faults, tally) = trace(FinderChoice::Auto);
     println!("{tally:?}");
     assert!(faults.is_empty(), "{}", faults.join("\n"));
-    assert_eq!(
-        (tally.rays(), tally.undecided, tally.uncertified),
-        (3040, 0, 0)
-    );
+    let counts = (tally.rays(), tally.undecided, tally.uncertified);
+    assert_eq!(counts, (3040, 0, 0));
 }
 
 #[test]
@@ -167,84 +156,52 @@ fn the_baseline_is_wrong_where_it_is_known_to_be() {
     assert!(faults.len() > 500, "{}", faults.len());
 }
 
+/// Second hits, from printed points as from anywhere, and as the path loop finds them: from t = 0,
+/// the surface they leave being known.
 #[test]
-fn second_hits_from_printed_points() {
-    let surfaces = placed(FinderChoice::Auto);
+fn second_hits() {
+    let surfaces = surfaces(FinderChoice::Auto);
     let (mut workspace, mut tally) = (Workspace::default(), Tally::default());
-    let table = rows(IMPLICIT);
+    let table = rows("implicit.csv");
     let first: HashMap<&str, &Row> = table.iter().map(|row| (row["id"].as_str(), row)).collect();
     let mut faults = Vec::new();
-    for row in &rows(include_str!("data/bounce.csv")) {
+    for row in &rows("bounce.csv") {
         let ray = first[row["id"].as_str()];
-        let (surface, _) = &surfaces[&ray["shape"]];
-        let ImplicitAnswer::Found(hit) = surface.first_hit(&query(ray), &mut workspace, &mut tally)
-        else {
-            panic!("{}: no first hit", row["id"]);
-        };
-        let again = Query {
-            ray: Ray {
-                origin: hit.point,
-                direction: vector(row, ["d2x", "d2y", "d2z"]),
-            },
-            // As in the oracle's own rays that start on a surface.
-            t_min: 1.0 / (1u64 << 24) as f64,
-            t_max: f64::INFINITY,
-        };
-        let right = match surface.first_hit(&again, &mut workspace, &mut tally) {
-            ImplicitAnswer::Found(hit) => {
-                row["hit2"] == "1" && (hit.t - number(row, "t2")).abs() < 1e-5
-            }
-            ImplicitAnswer::Absent => row["hit2"] == "0",
-            ImplicitAnswer::Undecided => false,
-        };
-        if !right {
-            faults.push(row["id"].clone());
-        }
-    }
-    assert!(faults.is_empty(), "{faults:?}");
-}
-
-/// The same second hits as the path loop finds them: from t = 0, the surface it leaves being known.
-#[test]
-fn second_hits_of_rays_that_leave() {
-    let (mut workspace, mut tally) = (Workspace::default(), Tally::default());
-    let table = rows(IMPLICIT);
-    let first: HashMap<&str, &Row> = table.iter().map(|row| (row["id"].as_str(), row)).collect();
-    let surfaces = surfaces();
-    let placed = placed(FinderChoice::Auto);
-    let mut faults = Vec::new();
-    let effort = Effort {
-        sharp: false,
-        exact: true,
-    };
-    let certified: BTreeMap<&String, Certified> = surfaces
-        .iter()
-        .map(|(name, surface)| {
-            let Implicit { field, inside, .. } = &surface.implicit;
-            let certified = Certified::new(&field.tape, *inside, &Affine::IDENTITY);
-            (name, certified.unwrap().unwrap())
-        })
-        .collect();
-    for row in &rows(include_str!("data/bounce.csv")) {
-        let ray = first[row["id"].as_str()];
-        let (surface, _) = &placed[&ray["shape"]];
-        let hit = surface.first_hit(&query(ray), &mut workspace, &mut tally);
+        let Surface {
+            placed, certified, ..
+        } = &surfaces[&ray["shape"]];
+        let hit = placed.first_hit(&query(ray), &mut workspace, &mut tally);
         let ImplicitAnswer::Found(hit) = hit else {
             panic!("{}: no first hit", row["id"]);
         };
-        let mut packet = Packet::default();
-        let direction = vector(row, ["d2x", "d2y", "d2z"]);
-        packet.set(0, hit.point, direction, [0.0, f64::INFINITY]);
-        packet.leaving = 1;
-        let certified = &certified[&ray["shape"]];
-        let answers = certified.first_hits(&packet, effort, &mut workspace);
-        let right = if answers.found & 1 == 1 {
-            row["hit2"] == "1" && (answers.t[0] - number(row, "t2")).abs() < 1e-5
-        } else {
-            answers.absent & 1 == 1 && row["hit2"] == "0"
+        let from_zero = from_zero(hit.point, vector(row, ["d2x", "d2y", "d2z"]));
+        let again = Query {
+            // As in the oracle's own rays that start on a surface.
+            t_min: 1.0 / (1u64 << 24) as f64,
+            ..from_zero
         };
-        if !right {
-            faults.push(format!("{} {} {}", row["id"], answers.t[0], row["t2"]));
+        let printed = match placed.first_hit(&again, &mut workspace, &mut tally) {
+            ImplicitAnswer::Found(hit) => Some(Some(hit.t)),
+            ImplicitAnswer::Absent => Some(None),
+            ImplicitAnswer::Undecided => None,
+        };
+        let mut packet = packet([from_zero]);
+        packet.leaving = 1;
+        let answers = certified.first_hits(&packet, HITS, &mut workspace);
+        let leaving = match (answers.found & 1, answers.absent & 1) {
+            (1, _) => Some(Some(answers.t[0])),
+            (_, 1) => Some(None),
+            _ => None,
+        };
+        for answer in [printed, leaving] {
+            let right = match answer {
+                Some(Some(t)) => row["hit2"] == "1" && (t - number(row, "t2")).abs() < 1e-5,
+                Some(None) => row["hit2"] == "0",
+                None => false,
+            };
+            if !right {
+                faults.push(format!("{} {answer:?} {}", row["id"], row["t2"]));
+            }
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
@@ -267,37 +224,29 @@ pub fn known(answers: &Answers, lane: usize) -> ([bool; 2], [u64; 3], u32, Tier)
 fn full_packets_agree_with_single_rays() {
     let sets = Instructions::all().into_iter();
     let mut workspaces: Vec<Workspace> = sets.map(Workspace::new).collect();
-    let table = rows(IMPLICIT);
-    for (name, surface) in &surfaces() {
-        let Implicit { field, inside, .. } = &surface.implicit;
-        let certified = Certified::new(&field.tape, *inside, &Affine::IDENTITY);
-        let certified = certified.unwrap().unwrap();
-        let rays: Vec<&Row> = table.iter().filter(|row| row["shape"] == *name).collect();
-        let packet = |rows: &[&Row]| {
-            let mut packet = Packet::default();
-            for (lane, row) in rows.iter().enumerate() {
-                let Query { ray, t_min, t_max } = query(row);
-                packet.set(lane, ray.origin, ray.direction, [t_min, t_max]);
-            }
-            packet
-        };
-        for (rays, sharp) in rays
+    let table = rows("implicit.csv");
+    for (name, surface) in &surfaces(FinderChoice::Auto) {
+        let certified = &surface.certified;
+        let queries = table.iter().filter(|row| row["shape"] == *name).map(query);
+        let queries: Vec<Query> = queries.collect();
+        for (rays, sharp) in queries
             .chunks(WIDTH)
             .flat_map(|rays| [(rays, false), (rays, true)])
         {
             let effort = Effort { sharp, exact: true };
-            let alone: Vec<Answers> = rays
+            let alone = rays
                 .iter()
-                .map(|row| certified.first_hits(&packet(&[row]), effort, &mut workspaces[0]))
-                .collect();
+                .map(|ray| certified.first_hits(&packet([*ray]), effort, &mut workspaces[0]));
+            let alone: Vec<Answers> = alone.collect();
             for workspace in &mut workspaces {
-                let together = certified.first_hits(&packet(rays), effort, workspace);
+                let together =
+                    certified.first_hits(&packet(rays.iter().copied()), effort, workspace);
                 for (lane, alone) in alone.iter().enumerate() {
+                    let set = workspace.instructions.name();
                     assert_eq!(
                         known(&together, lane),
                         known(alone, 0),
-                        "{name}, {} lane {lane}",
-                        workspace.instructions.name()
+                        "{name}, {set} lane {lane}"
                     );
                 }
             }
@@ -308,30 +257,15 @@ fn full_packets_agree_with_single_rays() {
 /// A finder that believes its arithmetic must be caught by this oracle.
 #[test]
 fn bounds_of_zero_are_noticed() {
-    let surfaces = surfaces();
+    let surfaces = surfaces(FinderChoice::Auto).into_iter();
+    let finders = surfaces.map(|(name, surface)| (name, without_bounds(surface.certified)));
+    let finders: BTreeMap<String, Certified> = finders.collect();
     let mut workspace = Workspace::default();
-    let effort = Effort {
-        sharp: false,
-        exact: true,
-    };
-    let finders: BTreeMap<&String, Certified> = surfaces
-        .iter()
-        .map(|(name, surface)| {
-            let Implicit { field, inside, .. } = &surface.implicit;
-            let certified = Certified::new(&field.tape, *inside, &Affine::IDENTITY);
-            (name, without_bounds(certified.unwrap().unwrap()))
-        })
-        .collect();
-    let wrong = rows(IMPLICIT)
-        .iter()
-        .filter(|row| {
-            let Query { ray, t_min, t_max } = query(row);
-            let mut packet = Packet::default();
-            packet.set(0, ray.origin, ray.direction, [t_min, t_max]);
-            let finder = &finders[&row["shape"]];
-            let answers = finder.first_hits(&packet, effort, &mut workspace);
-            (answers.found & 1 == 1) != (row["hit"] == "1")
-        })
-        .count();
-    assert!(wrong > 0);
+    let table = rows("implicit.csv");
+    let mut wrong = table.iter().filter(|row| {
+        let finder = &finders[&row["shape"]];
+        let answers = finder.first_hits(&packet([query(row)]), HITS, &mut workspace);
+        (answers.found & 1 == 1) != (row["hit"] == "1")
+    });
+    assert!(wrong.next().is_some());
 }

@@ -1,26 +1,21 @@
 //! Soundness of the first rung: what lanes call certain must be what the certified ladder says of
 //! the very same rounded ray, and both crossings must lie within the stated error.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a malformed oracle file must fail the test"
-)]
-
-use std::collections::HashMap;
-
 use etalon::Instructions;
 use etalon::inside::math::affine::Affine;
 use etalon::inside::math::lanes::Scalar;
-use etalon::inside::shape::{Placed, Ray, ShapeKind};
+use etalon::inside::shape::{Placed, Ray};
 use etalon_doors::shapes::{RaySpan, crossings, spans};
 use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::{PRECISIONS, Precision, on_each, same_bits};
+use crate::oracle_support::{Row, primitives, ray};
 use crate::shape_ladder::{KINDS, critical_point, cubed, decade, matrix};
 
 /// One ray against one shape, in f64.
+#[derive(Clone)]
 struct Case {
     placed: Placed,
     ray: Ray,
@@ -86,10 +81,8 @@ impl Record {
 
     fn check_all(cases: &[Case], precision: Precision) -> Self {
         let mut record = Self::default();
-        for (case, answer) in cases
-            .iter()
-            .zip(ask(Instructions::best(), precision, cases))
-        {
+        let answers = ask(Instructions::best(), precision, cases);
+        for (case, answer) in cases.iter().zip(answers) {
             record.check(case, &answer);
         }
         record
@@ -103,54 +96,19 @@ impl Record {
             100.0 * self.undecided as f64 / self.asked as f64,
             self.tightest,
         );
-        assert!(
-            self.wrong.is_empty(),
-            "{what}: {} wrong, such as\n{}",
-            self.wrong.len(),
-            self.wrong[..self.wrong.len().min(3)].join("\n")
-        );
+        let some = self.wrong[..self.wrong.len().min(3)].join("\n");
+        assert_eq!(self.wrong.len(), 0, "{what}: such as\n{some}");
     }
 }
 
 /// The oracle's rays, with unit directions as the loop has them.
 fn oracle_cases() -> Vec<Case> {
-    let read = |text: &'static str| {
-        csv::ReaderBuilder::new()
-            .flexible(true)
-            .from_reader(text.as_bytes())
-            .deserialize()
-            .map(Result::unwrap)
-            .collect::<Vec<HashMap<String, String>>>()
+    let case = |(row, placed, _): (Row, Placed, f64)| {
+        let mut ray = ray(&row);
+        ray.direction = ray.direction.normalize();
+        Case { placed, ray }
     };
-    let number = |row: &HashMap<String, String>, name: &str| -> f64 { row[name].parse().unwrap() };
-    let transforms: HashMap<String, Affine> = read(include_str!("data/transforms.csv"))
-        .iter()
-        .map(|row| {
-            let rows = [0, 1, 2].map(|i| [0, 1, 2, 3].map(|j| number(row, &format!("m{i}{j}"))));
-            (row["transform"].clone(), Affine { rows })
-        })
-        .collect();
-    read(include_str!("data/primitives.csv"))
-        .iter()
-        .map(|row| {
-            let kind = match row["shape"].as_str() {
-                "sphere" => ShapeKind::Sphere,
-                "cube" => ShapeKind::Cube,
-                "cylinder" => ShapeKind::Cylinder,
-                "rect" => ShapeKind::Rectangle,
-                "disk" => ShapeKind::Disk,
-                other => panic!("unknown shape {other}"),
-            };
-            let vector = |names: [&str; 3]| DVec3::from_array(names.map(|n| number(row, n)));
-            Case {
-                placed: Placed::new(kind, &transforms[&row["transform"]]).unwrap(),
-                ray: Ray {
-                    origin: vector(["ox", "oy", "oz"]),
-                    direction: vector(["dx", "dy", "dz"]).normalize(),
-                },
-            }
-        })
-        .collect()
+    primitives().into_iter().map(case).collect()
 }
 
 #[test]
@@ -190,15 +148,9 @@ fn nasty(rng: &mut impl Rng, to_world: &Affine, precision: Precision) -> Ray {
         1 => rng.random_range(-3.0..3.0),
         _ => decade(rng, -2.0, 6.0),
     };
-    let direction = to_world.vector(local);
-    let direction = if direction.length() > 0.0 {
-        direction.normalize()
-    } else {
-        DVec3::X
-    };
     Ray {
         origin: to_world.point(aim - local * away),
-        direction,
+        direction: to_world.vector(local).normalize_or(DVec3::X),
     }
 }
 
@@ -207,10 +159,9 @@ fn nasty_cases(precision: Precision, seed: u64, rounds: usize) -> Vec<Case> {
     let mut cases = Vec::new();
     for round in 0..rounds {
         let kind = KINDS[round % KINDS.len()];
-        let to_world = if rng.random_bool(0.5) {
-            matrix(&mut rng)
-        } else {
-            gentle(&mut rng)
+        let to_world = match rng.random_bool(0.5) {
+            true => matrix(&mut rng),
+            false => gentle(&mut rng),
         };
         let placed = Placed::new(kind, &to_world).unwrap();
         for _ in 0..4 {
@@ -219,10 +170,8 @@ fn nasty_cases(precision: Precision, seed: u64, rounds: usize) -> Vec<Case> {
                 // From the very centre, and from far off the shape.
                 ray.origin = to_world.point(cubed(&mut rng) * decade(&mut rng, -20.0, 3.0));
             }
-            cases.push(Case {
-                placed: placed.clone(),
-                ray,
-            });
+            let placed = placed.clone();
+            cases.push(Case { placed, ray });
         }
     }
     cases
@@ -230,14 +179,12 @@ fn nasty_cases(precision: Precision, seed: u64, rounds: usize) -> Vec<Case> {
 
 /// A transform such as scenes have.
 fn gentle(rng: &mut impl Rng) -> Affine {
-    let mut rows = [[0.0; 4]; 3];
-    for (i, row) in rows.iter_mut().enumerate() {
-        for entry in row.iter_mut() {
-            *entry = rng.random_range(-1.0..1.0);
-        }
+    let rows = [0, 1, 2].map(|i| {
+        let mut row = [(); 4].map(|()| rng.random_range(-1.0..1.0));
         row[i] += 2.0;
         row[3] *= 10.0;
-    }
+        row
+    });
     Affine { rows }
 }
 
@@ -246,14 +193,8 @@ fn lanes_never_contradict_the_ladder_on_nasty_rays() {
     for precision in PRECISIONS {
         let cases = nasty_cases(precision, 0x0050_facd, 12_000);
         for &kind in KINDS {
-            let mine: Vec<Case> = cases
-                .iter()
-                .filter(|case| case.placed.kind() == kind)
-                .map(|case| Case {
-                    placed: case.placed.clone(),
-                    ray: case.ray,
-                })
-                .collect();
+            let mine = cases.iter().filter(|case| case.placed.kind() == kind);
+            let mine: Vec<Case> = mine.cloned().collect();
             let record = Record::check_all(&mine, precision);
             record.assert_sound(&format!("{kind:?}, {precision:?}"));
             assert!(record.hits > 100 && record.undecided < record.asked);
@@ -265,20 +206,16 @@ fn lanes_never_contradict_the_ladder_on_nasty_rays() {
 fn ordinary_rays_are_nearly_always_decided() {
     let mut rng = Pcg64Mcg::seed_from_u64(77);
     for precision in PRECISIONS {
-        let cases: Vec<Case> = (0..6_000)
-            .map(|round| {
-                let to_world = gentle(&mut rng);
-                let aim = to_world.point(1.5 * cubed(&mut rng));
-                let origin = to_world.point(6.0 * cubed(&mut rng));
-                Case {
-                    placed: Placed::new(KINDS[round % KINDS.len()], &to_world).unwrap(),
-                    ray: Ray {
-                        origin,
-                        direction: (aim - origin).normalize(),
-                    },
-                }
-            })
-            .collect();
+        let mut case = |round: usize| {
+            let to_world = gentle(&mut rng);
+            let aim = to_world.point(1.5 * cubed(&mut rng));
+            let origin = to_world.point(6.0 * cubed(&mut rng));
+            let direction = (aim - origin).normalize();
+            let placed = Placed::new(KINDS[round % KINDS.len()], &to_world).unwrap();
+            let ray = Ray { origin, direction };
+            Case { placed, ray }
+        };
+        let cases: Vec<Case> = (0..6_000).map(&mut case).collect();
         let record = Record::check_all(&cases, precision);
         record.assert_sound(&format!("ordinary, {precision:?}"));
         let share = record.undecided as f64 / record.asked as f64;
@@ -296,14 +233,10 @@ fn all_instruction_sets_give_the_same_spans() {
         let all = on_each(|set| ask(set, precision, &cases));
         for (name, answers) in &all[1..] {
             for (a, b) in all[0].1.iter().zip(answers) {
-                assert!(
-                    (a.hit, a.miss) == (b.hit, b.miss)
-                        && same_bits(a.near[0], b.near[0])
-                        && same_bits(a.near[1], b.near[1])
-                        && same_bits(a.far[0], b.far[0])
-                        && same_bits(a.far[1], b.far[1]),
-                    "{name}: {a:?} {b:?}"
-                );
+                let ends = |span: &RaySpan| [span.near, span.far].concat();
+                let same = ends(a).iter().zip(ends(b)).all(|(a, b)| same_bits(*a, b));
+                let same = same && (a.hit, a.miss) == (b.hit, b.miss);
+                assert!(same, "{name}: {a:?} {b:?}");
             }
         }
     }
@@ -312,26 +245,23 @@ fn all_instruction_sets_give_the_same_spans() {
 #[test]
 fn a_wrong_span_is_noticed() {
     let cases = nasty_cases(Precision::Double, 9, 300);
-    let mut record = Record::default();
-    for (case, mut answer) in cases
-        .iter()
-        .zip(ask(Instructions::best(), Precision::Double, &cases))
-    {
-        // A bound a million times too small, as of a forgotten term.
+    let wrong = |spoil: fn(&mut RaySpan)| {
+        let mut record = Record::default();
+        let answers = ask(Instructions::best(), Precision::Double, &cases);
+        for (case, mut answer) in cases.iter().zip(answers) {
+            spoil(&mut answer);
+            record.check(case, &answer);
+        }
+        record.wrong.len()
+    };
+    // A bound a million times too small, as of a forgotten term.
+    let narrow = wrong(|answer| {
         for [low, high] in [&mut answer.near, &mut answer.far] {
             let (middle, half) = ((*low + *high) / 2.0, (*high - *low) / 2.0);
             (*low, *high) = (middle - 1e-6 * half, middle + 1e-6 * half);
         }
-        record.check(case, &answer);
-    }
-    assert!(record.wrong.len() > 10, "{}", record.wrong.len());
-    let mut record = Record::default();
-    for (case, mut answer) in cases
-        .iter()
-        .zip(ask(Instructions::best(), Precision::Double, &cases))
-    {
-        (answer.hit, answer.miss) = (answer.miss, answer.hit);
-        record.check(case, &answer);
-    }
-    assert!(record.wrong.len() > 300);
+    });
+    assert!(narrow > 10, "{narrow}");
+    let swapped = wrong(|answer| std::mem::swap(&mut answer.hit, &mut answer.miss));
+    assert!(swapped > 300, "{swapped}");
 }

@@ -1,4 +1,4 @@
-//! Asking the doors of the lane code on every instruction set of this machine.
+//! Asking lane code on every instruction set of this machine.
 
 use etalon::Instructions;
 

@@ -4,8 +4,6 @@
 //! False alarms: this module's random tests share the family level 1e-4 (Šidák over the number
 //! made), seeds are fixed and nothing is tried twice.
 
-#![allow(clippy::unwrap_used, reason = "the truths file is part of the tests")]
-
 use std::f64::consts::PI;
 
 use etalon::Instructions;
@@ -13,68 +11,93 @@ use etalon::inside::light::{
     CubeLight, CylinderLight, LightShape, MappedLight, PlanarLight, PointLight, RectangleLight,
     SphereLight, WithoutSurface,
 };
+use etalon::inside::math::affine::Affine;
 use etalon::inside::math::lanes::Scalar;
+use etalon::inside::shape::{Placed, Ray, ShapeKind, Start, Tally};
+use etalon::inside::stats::family::sidak;
 use etalon_doors::Made;
 use etalon_doors::lights::{AnyLight, LightSample, light_densities, light_samples};
 use glam::{DMat3, DVec3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use rayon::prelude::*;
 
 use crate::lanes_support::{PRECISIONS, Precision, on_each, same_bits};
-use crate::statistics_support::{chi_square, t_test};
-use crate::truth_file::truth;
-use etalon::inside::stats::family::sidak;
+use crate::statistics_support::{chi_square, moments, t_test};
+use crate::truth_file::{number, truth, vector};
 
 /// Level of all random tests of this module together.
 const FAMILY: f64 = 1e-4;
 
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    Rectangle,
+    Parallelogram,
+    Disk,
+    Sphere,
+    Cube,
+    Cylinder,
+    Ellipsoid,
+    /// A cylinder under any map.
+    Barrel,
+}
+
+/// A canonical shape, of half width or radius 1, whose axes are mapped to these.
 #[derive(Debug, Clone, Copy)]
-enum Light {
-    Rectangle { centre: DVec3, half: [DVec3; 2] },
-    Parallelogram { centre: DVec3, half: [DVec3; 2] },
-    Disk { centre: DVec3, half: [DVec3; 2] },
-    Sphere { centre: DVec3, radius: f64 },
-    Cube { centre: DVec3, half: [DVec3; 3] },
-    Cylinder { centre: DVec3, half: [DVec3; 3] },
-    Ellipsoid { centre: DVec3, half: [DVec3; 3] },
-    Barrel { centre: DVec3, half: [DVec3; 3] },
-    Point(DVec3),
+struct Light {
+    kind: Kind,
+    centre: DVec3,
+    axes: [DVec3; 3],
 }
 
 impl Light {
-    fn build<T: Scalar>(&self) -> LightShape<T> {
-        let both = [true, true];
-        match *self {
-            Self::Rectangle { centre, half } => {
-                let normal = half[0].cross(half[1]).normalize();
-                LightShape::Rectangle(RectangleLight::new(centre, half, normal, both))
-            }
-            Self::Parallelogram { centre, half } => {
-                let normal = half[0].cross(half[1]).normalize();
-                LightShape::Planar(PlanarLight::new(centre, half, normal, false, both))
-            }
-            Self::Disk { centre, half } => {
-                let normal = half[0].cross(half[1]).normalize();
-                LightShape::Planar(PlanarLight::new(centre, half, normal, true, both))
-            }
-            Self::Sphere { centre, radius } => {
-                LightShape::Sphere(SphereLight::new(centre, radius, both))
-            }
-            Self::Cube { centre, half } => {
-                LightShape::Cube(CubeLight::new(centre, half, cube_normals(half), both))
-            }
-            Self::Cylinder { centre, half } => {
-                let [a, b, c] = half;
-                LightShape::Cylinder(CylinderLight::new(centre, [a, b], c, both))
-            }
-            Self::Ellipsoid { centre, half } => {
-                LightShape::Mapped(MappedLight::ellipsoid(centre, linear(half), both))
-            }
-            Self::Barrel { centre, half } => {
-                LightShape::Mapped(MappedLight::cylinder(centre, linear(half), both))
-            }
-            Self::Point(at) => LightShape::Point(PointLight::new(at)),
+    fn new(kind: Kind, centre: DVec3, axes: [DVec3; 3]) -> Self {
+        Self { kind, centre, axes }
+    }
+
+    fn flat(kind: Kind, centre: DVec3, [a, b]: [DVec3; 2]) -> Self {
+        Self::new(kind, centre, [a, b, a.cross(b).normalize()])
+    }
+
+    fn sphere(centre: DVec3, radius: f64) -> Self {
+        Self::new(Kind::Sphere, centre, DVec3::AXES.map(|axis| radius * axis))
+    }
+
+    fn shape(&self) -> ShapeKind {
+        match self.kind {
+            Kind::Rectangle | Kind::Parallelogram => ShapeKind::Rectangle,
+            Kind::Disk => ShapeKind::Disk,
+            Kind::Sphere | Kind::Ellipsoid => ShapeKind::Sphere,
+            Kind::Cube => ShapeKind::Cube,
+            Kind::Cylinder | Kind::Barrel => ShapeKind::Cylinder,
         }
+    }
+
+    fn build<T: Scalar>(&self) -> LightShape<T> {
+        let (centre, both) = (self.centre, [true, true]);
+        let [a, b, c] = self.axes;
+        match self.kind {
+            Kind::Rectangle => LightShape::Rectangle(RectangleLight::new(centre, [a, b], c, both)),
+            Kind::Parallelogram => {
+                LightShape::Planar(PlanarLight::new(centre, [a, b], c, false, both))
+            }
+            Kind::Disk => LightShape::Planar(PlanarLight::new(centre, [a, b], c, true, both)),
+            Kind::Sphere => LightShape::Sphere(SphereLight::new(centre, a.length(), both)),
+            Kind::Cube => {
+                let normals = cube_normals(self.axes);
+                LightShape::Cube(CubeLight::new(centre, self.axes, normals, both))
+            }
+            Kind::Cylinder => LightShape::Cylinder(CylinderLight::new(centre, [a, b], c, both)),
+            Kind::Ellipsoid => {
+                LightShape::Mapped(MappedLight::ellipsoid(centre, self.linear(), both))
+            }
+            Kind::Barrel => LightShape::Mapped(MappedLight::cylinder(centre, self.linear(), both)),
+        }
+    }
+
+    fn linear(&self) -> DMat3 {
+        let [a, b, c] = self.axes;
+        DMat3::from_cols(a, b, c)
     }
 
     /// What comes of it in a precision.
@@ -85,128 +108,37 @@ impl Light {
         }
     }
 
-    /// The canonical shape of a mapped one, with the map.
-    fn canonical(&self) -> Option<(Self, DVec3, DMat3)> {
-        let zero = DVec3::ZERO;
-        match *self {
-            Self::Ellipsoid { centre, half } => {
-                let sphere = Self::Sphere {
-                    centre: zero,
-                    radius: 1.0,
-                };
-                Some((sphere, centre, linear(half)))
-            }
-            Self::Barrel { centre, half } => {
-                let half_axes = [DVec3::X, DVec3::Y, DVec3::Z];
-                let cylinder = Self::Cylinder {
-                    centre: zero,
-                    half: half_axes,
-                };
-                Some((cylinder, centre, linear(half)))
-            }
-            _ => None,
-        }
+    /// The same surface as rays meet it.
+    fn placed(&self) -> Placed {
+        let [a, b, c] = self.axes;
+        let row = |i: usize| [a[i], b[i], c[i], self.centre[i]];
+        let rows = [0, 1, 2].map(row);
+        Placed::new(self.shape(), &Affine { rows }).unwrap()
     }
 
-    /// First crossing of the ray: distance and outward normal.
-    fn hit(&self, p: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
-        let flat = |centre: DVec3, half: [DVec3; 2], inside: &dyn Fn(f64, f64) -> bool| {
-            let normal = half[0].cross(half[1]).normalize();
-            let t = (centre - p).dot(normal) / direction.dot(normal);
-            let at = p + t * direction - centre;
-            // Dual axes of a parallelogram.
-            let [x, y] = [half[1].cross(normal), normal.cross(half[0])];
-            let (x, y) = (at.dot(x) / half[0].dot(x), at.dot(y) / half[1].dot(y));
-            (t > 0.0 && inside(x, y)).then_some((t, normal))
+    /// The outward normal at the light's point nearest to `at`, roughly: which face of a cube.
+    fn normal_near(&self, at: DVec3) -> DVec3 {
+        let inverse = self.linear().inverse();
+        let q = inverse * (at - self.centre);
+        let normal = match self.shape() {
+            ShapeKind::Sphere => q,
+            ShapeKind::Cylinder if q.truncate().length() > q.z.abs() => q.with_z(0.0),
+            ShapeKind::Cylinder => DVec3::Z * q.z.signum(),
+            ShapeKind::Cube => {
+                let axis = q.abs().max_position();
+                DVec3::AXES[axis] * q[axis].signum()
+            }
+            _ => DVec3::Z,
         };
-        let square = |x: f64, y: f64| x.abs() <= 1.0 && y.abs() <= 1.0;
-        match *self {
-            Self::Rectangle { centre, half } | Self::Parallelogram { centre, half } => {
-                flat(centre, half, &square)
-            }
-            Self::Disk { centre, half } => flat(centre, half, &|x, y| x * x + y * y <= 1.0),
-            Self::Sphere { centre, radius } => {
-                let o = p - centre;
-                let b = o.dot(direction);
-                let foot = o - b * direction;
-                let c = radius * radius - foot.length_squared();
-                if c < 0.0 {
-                    return None;
-                }
-                let outside = o.length() > radius;
-                let t = if outside {
-                    -b - c.sqrt()
-                } else {
-                    -b + c.sqrt()
-                };
-                (t > 0.0).then(|| (t, (o + t * direction) / radius))
-            }
-            Self::Cube { centre, half } => {
-                let normals = cube_normals(half);
-                let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
-                let (mut entered, mut left) = (DVec3::ZERO, DVec3::ZERO);
-                for axis in 0..3 {
-                    let n = normals[axis];
-                    let (o, d) = ((p - centre).dot(n), direction.dot(n));
-                    let h = half[axis].dot(n);
-                    let (t1, t2) = ((-h * d.signum() - o) / d, (h * d.signum() - o) / d);
-                    if t1 > near {
-                        (near, entered) = (t1, -n * d.signum());
-                    }
-                    if t2 < far {
-                        (far, left) = (t2, n * d.signum());
-                    }
-                }
-                if near > far || far <= 0.0 {
-                    None
-                } else if near > 0.0 {
-                    Some((near, entered))
-                } else {
-                    Some((far, left))
-                }
-            }
-            Self::Cylinder { centre, half } => {
-                let [a, b, c] = half;
-                let (radius, height) = (a.length(), c.length());
-                let local =
-                    |v: DVec3| DVec3::new(v.dot(a) / radius, v.dot(b) / radius, v.dot(c) / height);
-                let (o, d) = (local(p - centre), local(direction));
-                let (square, linear) = (d.x * d.x + d.y * d.y, o.x * d.x + o.y * d.y);
-                let rest = linear * linear - square * (o.x * o.x + o.y * o.y - radius * radius);
-                let side = [-1.0, 1.0].map(|sign| (-linear + sign * rest.sqrt()) / square);
-                let caps = [-1.0, 1.0].map(|sign| (sign * height * d.z.signum() - o.z) / d.z);
-                let (near, far) = (side[0].max(caps[0]), side[1].min(caps[1]));
-                if rest < 0.0 || near > far || far <= 0.0 {
-                    return None;
-                }
-                let (t, by_cap) = if near > 0.0 {
-                    (near, caps[0] > side[0])
-                } else {
-                    (far, caps[1] < side[1])
-                };
-                let at = o + t * d;
-                let normal = if by_cap {
-                    c * (at.z.signum() / height)
-                } else {
-                    (a * at.x + b * at.y) / (radius * radius)
-                };
-                Some((t, normal))
-            }
-            Self::Ellipsoid { .. } | Self::Barrel { .. } => {
-                let (canonical, centre, map) = self.canonical()?;
-                let back = map.inverse() * direction;
-                let q = map.inverse() * (p - centre);
-                let (t, normal) = canonical.hit(q, back.normalize())?;
-                let normal = map.inverse().transpose() * normal;
-                Some((t / back.length(), normal.normalize()))
-            }
-            Self::Point(_) => None,
-        }
+        (inverse.transpose() * normal).normalize()
     }
 }
 
-fn linear([a, b, c]: [DVec3; 3]) -> DMat3 {
-    DMat3::from_cols(a, b, c)
+/// The first crossing of a ray: distance and outward normal.
+fn hit(placed: &Placed, origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
+    let ray = Ray { origin, direction };
+    let hit = placed.first_hit(&ray, 0.0, Start::Free, &mut Tally::default())?;
+    Some((hit.t, hit.normal))
 }
 
 fn cube_normals(half: [DVec3; 3]) -> [DVec3; 3] {
@@ -214,6 +146,10 @@ fn cube_normals(half: [DVec3; 3]) -> [DVec3; 3] {
         let n = half[(i + 1) % 3].cross(half[(i + 2) % 3]).normalize();
         n * n.dot(half[i]).signum()
     })
+}
+
+fn rounded(precision: Precision, v: DVec3) -> DVec3 {
+    v.to_array().map(|x| precision.rounded(x)).into()
 }
 
 /// Samples of a light from p.
@@ -242,7 +178,7 @@ fn asked(
     (light, p): (Light, DVec3),
     samples: &[LightSample],
 ) -> Vec<f64> {
-    let start = DVec3::from_array(p.to_array().map(|x| precision.rounded(x)));
+    let start = rounded(precision, p);
     let hit = |sample: &LightSample| {
         // Found in f64 for the rounded direction.
         let near = start + sample.distance * sample.direction;
@@ -253,61 +189,16 @@ fn asked(
     light.ask(precision, |light| light_densities(set, light, p, &hits))
 }
 
-impl Light {
-    /// The outward normal at the light's point nearest to `at`, roughly: which face of a cube.
-    fn normal_near(&self, at: DVec3) -> DVec3 {
-        match *self {
-            Self::Rectangle { half, .. }
-            | Self::Parallelogram { half, .. }
-            | Self::Disk { half, .. } => half[0].cross(half[1]).normalize(),
-            Self::Sphere { centre, .. } => (at - centre).normalize(),
-            Self::Cube { centre, half } => {
-                let normals = cube_normals(half);
-                let excess = |n: DVec3, h: DVec3| ((at - centre).dot(n) / h.dot(n)).abs();
-                let (mut best, mut most) = (DVec3::X, f64::NEG_INFINITY);
-                for (n, h) in normals.into_iter().zip(half) {
-                    if excess(n, h) > most {
-                        most = excess(n, h);
-                        best = n * (at - centre).dot(n).signum();
-                    }
-                }
-                best
-            }
-            Self::Cylinder { centre, half } => {
-                let [a, b, c] = half;
-                let v = at - centre;
-                let (x, y) = (v.dot(a) / a.length_squared(), v.dot(b) / b.length_squared());
-                let z = v.dot(c) / c.length_squared();
-                if x.hypot(y) > z.abs() {
-                    (x * a + y * b).normalize()
-                } else {
-                    c.normalize() * z.signum()
-                }
-            }
-            Self::Ellipsoid { .. } | Self::Barrel { .. } => {
-                let (canonical, centre, map) = self.canonical().unwrap();
-                let normal = canonical.normal_near(map.inverse() * (at - centre));
-                (map.inverse().transpose() * normal).normalize()
-            }
-            Self::Point(at) => at,
-        }
-    }
-}
-
 /// Jittered n × n variates.
 fn variates(rng: &mut Pcg64Mcg, n: usize) -> Vec<[f64; 2]> {
-    let mut all = Vec::with_capacity(n * n);
-    for i in 0..n {
-        for j in 0..n {
-            let (u, v): (f64, f64) = (rng.random(), rng.random());
-            all.push([(i as f64 + u) / n as f64, (j as f64 + v) / n as f64]);
-        }
-    }
-    all
+    let cells = (0..n * n).map(|k| [k / n, k % n]);
+    cells
+        .map(|cell| cell.map(|i| (i as f64 + rng.random::<f64>()) / n as f64))
+        .collect()
 }
 
 fn independent(rng: &mut Pcg64Mcg, n: usize) -> Vec<[f64; 2]> {
-    (0..n).map(|_| [rng.random(), rng.random()]).collect()
+    (0..n).map(|_| rng.random()).collect()
 }
 
 /// Lights with receivers: near, far, grazing, on the axis, in the plane's neighbourhood, inside.
@@ -372,65 +263,44 @@ fn settings() -> Vec<(Light, Vec<DVec3>)> {
         at(0.4, 0.5, -0.6),
         at(0.0, 0.0, 0.9),
     ];
+    let flat_light = |kind| Light::flat(kind, centre, half);
+    let light = |kind, axes| Light::new(kind, centre, axes);
     vec![
         (
-            Light::Rectangle {
-                centre,
-                half: [half[0], upright],
-            },
+            Light::flat(Kind::Rectangle, centre, [half[0], upright]),
             flat.clone(),
         ),
-        (Light::Parallelogram { centre, half }, flat.clone()),
-        (Light::Disk { centre, half }, flat),
-        (Light::Sphere { centre, radius }, sphere),
-        (
-            Light::Cube {
-                centre,
-                half: sides,
-            },
-            cube,
-        ),
-        (
-            Light::Cylinder {
-                centre,
-                half: round,
-            },
-            cylinder,
-        ),
-        (
-            Light::Ellipsoid {
-                centre,
-                half: sides,
-            },
-            ellipsoid,
-        ),
-        (
-            Light::Barrel {
-                centre,
-                half: sides,
-            },
-            barrel,
-        ),
+        (flat_light(Kind::Parallelogram), flat.clone()),
+        (flat_light(Kind::Disk), flat),
+        (Light::sphere(centre, radius), sphere),
+        (light(Kind::Cube, sides), cube),
+        (light(Kind::Cylinder, round), cylinder),
+        (light(Kind::Ellipsoid, sides), ellipsoid),
+        (light(Kind::Barrel, sides), barrel),
     ]
+}
+
+/// The same, a receiver at a time.
+fn pairs() -> impl Iterator<Item = (Light, DVec3)> {
+    let settings = settings().into_iter();
+    settings.flat_map(|(light, receivers)| receivers.into_iter().map(move |p| (light, p)))
 }
 
 #[test]
 fn both_strategies_see_the_same_density() {
     let mut rng = Pcg64Mcg::seed_from_u64(21);
     for precision in PRECISIONS {
-        for (light, receivers) in settings() {
-            for p in receivers {
-                let variates = variates(&mut rng, 64);
-                let drawn = best(precision, (light, p), &variates);
-                let asked = asked(Instructions::best(), precision, (light, p), &drawn);
-                for (sample, asked) in drawn.iter().zip(asked) {
-                    assert!(sample.valid && sample.pdf > 0.0, "{light:?} {p} {sample:?}");
-                    // Not within 1e-5 of each other but equal: they are the same function.
-                    assert!(
-                        same_bits(sample.pdf, asked),
-                        "{precision:?} {light:?} {p} {sample:?} {asked}"
-                    );
-                }
+        for (light, p) in pairs() {
+            let variates = variates(&mut rng, 64);
+            let drawn = best(precision, (light, p), &variates);
+            let asked = asked(Instructions::best(), precision, (light, p), &drawn);
+            for (sample, asked) in drawn.iter().zip(asked) {
+                assert!(sample.valid && sample.pdf > 0.0, "{light:?} {p} {sample:?}");
+                // Not within 1e-5 of each other but equal: they are the same function.
+                assert!(
+                    same_bits(sample.pdf, asked),
+                    "{precision:?} {light:?} {p} {sample:?} {asked}"
+                );
             }
         }
     }
@@ -442,36 +312,29 @@ fn densities_are_those_of_the_geometry() {
     for precision in PRECISIONS {
         let u = precision.roundoff();
         let mut worst = 0.0_f64;
-        for (light, receivers) in settings() {
-            for p in receivers {
-                let p = DVec3::from_array(p.to_array().map(|x| precision.rounded(x)));
-                let variates = variates(&mut rng, 32);
-                for sample in best(precision, (light, p), &variates) {
-                    let Some((t, normal)) = light.hit(p, sample.direction.normalize()) else {
-                        // Rounded past the edge.
-                        continue;
-                    };
-                    let cosine = normal.dot(sample.direction).abs();
-                    let expected = match light {
-                        Light::Parallelogram { half, .. } => {
-                            t * t / cosine / (4.0 * half[0].cross(half[1]).length())
-                        }
-                        Light::Disk { half, .. } => {
-                            t * t / cosine / (PI * half[0].cross(half[1]).length())
-                        }
-                        // The others have tests of their own integrals.
-                        _ => continue,
-                    };
-                    // Rounding a direction by u moves cos by as much; the height of a plane is
-                    // good to u of the distance.
-                    let allowed = 20.0 * u * (1.0 + 4.0 / cosine);
-                    let error = (sample.pdf / expected - 1.0).abs();
-                    worst = worst.max(error / allowed);
-                    assert!(
-                        (sample.distance / t - 1.0).abs() <= allowed,
-                        "{sample:?} {t}"
-                    );
-                }
+        for (light, p) in pairs() {
+            // The others have tests of their own integrals.
+            let area = match light.kind {
+                Kind::Parallelogram => 4.0,
+                Kind::Disk => PI,
+                _ => continue,
+            } * light.axes[0].cross(light.axes[1]).length();
+            let (placed, p) = (light.placed(), rounded(precision, p));
+            let variates = variates(&mut rng, 32);
+            for sample in best(precision, (light, p), &variates) {
+                let Some((t, normal)) = hit(&placed, p, sample.direction.normalize()) else {
+                    // Rounded past the edge.
+                    continue;
+                };
+                let cosine = normal.dot(sample.direction).abs();
+                let expected = t * t / cosine / area;
+                // Rounding a direction by u moves cos by as much; the height of a plane is good to
+                // u of the distance.
+                let allowed = 20.0 * u * (1.0 + 4.0 / cosine);
+                let error = (sample.pdf / expected - 1.0).abs();
+                worst = worst.max(error / allowed);
+                let off = (sample.distance / t - 1.0).abs();
+                assert!(off <= allowed, "{sample:?} {t}");
             }
         }
         println!("{precision:?}: densities within {worst} of what is allowed");
@@ -523,96 +386,73 @@ impl Bins {
     }
 }
 
-/// What one setting says: the integral of the density with its quadrature's error, and the p-value
-/// of χ² of drawn directions against it.
-struct Verdict {
-    integral: f64,
-    p_value: f64,
-}
-
-/// Integrates the density over solid-angle bins by an n × n midpoint rule in each, and compares
-/// counts of drawn directions, whose density may have been bent by `bend`.
+/// The integral of the density over solid-angle bins, by an n × n midpoint rule in each, and the
+/// p-value of χ² of drawn directions against it, whose density may have been bent by `bend`.
 fn verdict(
-    light: Light,
-    p: DVec3,
+    (light, p): (Light, DVec3),
     rng: &mut Pcg64Mcg,
     precision: Precision,
     bend: impl Fn([f64; 2]) -> [f64; 2],
-) -> Verdict {
+) -> (f64, f64) {
     let samples: Vec<[f64; 2]> = independent(rng, 40_000).into_iter().map(bend).collect();
     let drawn = best(precision, (light, p), &samples);
     let axis: DVec3 = drawn.iter().map(|s| s.direction).sum();
     let axis = axis.try_normalize().unwrap_or(DVec3::Z);
     // A cone that covers every direction to the light.
-    let farthest = drawn
-        .iter()
-        .map(|s| s.direction.dot(axis))
-        .fold(1.0, f64::min);
+    let cosines = drawn.iter().map(|s| s.direction.dot(axis));
+    let farthest = cosines.fold(1.0, f64::min);
     let bins = Bins::about(axis, ((1.0 - farthest) * 1.05 + 1e-6).min(2.0));
     let fine = 40;
-    let mut directions = Vec::new();
-    let mut place = Vec::new();
     let (rows, columns) = (bins.rows * fine, bins.columns * fine);
-    for i in 0..rows {
-        for j in 0..columns {
-            let d = bins.direction(
-                (i as f64 + 0.5) / rows as f64,
-                (j as f64 + 0.5) / columns as f64,
-            );
-            if let Some((_, normal)) = light.hit(p, d) {
-                directions.push((d, normal));
-                place.push((i / fine) * bins.columns + j / fine);
-            }
-        }
-    }
+    let placed = light.placed();
+    let cell = |k: usize| {
+        let (i, j) = (k / columns, k % columns);
+        let middle = |i: usize, of: usize| (i as f64 + 0.5) / of as f64;
+        let direction = bins.direction(middle(i, rows), middle(j, columns));
+        let (_, normal) = hit(&placed, p, direction)?;
+        let place = i / fine * bins.columns + j / fine;
+        Some((place, (direction, normal)))
+    };
+    let cells = (0..rows * columns).into_par_iter().filter_map(cell);
+    let (places, directions): (Vec<usize>, Vec<(DVec3, DVec3)>) = cells.unzip();
     let densities = light.ask(Precision::Double, |light| {
         light_densities(Instructions::best(), light, p, &directions)
     });
-    let cell = 2.0 * PI * bins.height / (rows * columns) as f64;
+    let area = 2.0 * PI * bins.height / (rows * columns) as f64;
     let mut expected = vec![0.0; bins.rows * bins.columns];
-    for (&place, &pdf) in place.iter().zip(&densities) {
-        expected[place] += pdf * cell;
+    for (&place, &pdf) in places.iter().zip(&densities) {
+        expected[place] += pdf * area;
     }
     let integral: f64 = expected.iter().sum();
     let mut counts = vec![0; expected.len()];
-    for sample in &drawn {
-        if let Some(bin) = bins.of(sample.direction) {
-            counts[bin] += 1;
-        }
+    for bin in drawn.iter().filter_map(|sample| bins.of(sample.direction)) {
+        counts[bin] += 1;
     }
     let total: u64 = counts.iter().sum();
     for e in &mut expected {
-        *e *= total as f64 / integral;
         // The quadrature may miss a sliver at the outline.
-        *e = e.max(1e-9);
+        *e = (*e * total as f64 / integral).max(1e-9);
     }
     let sum: f64 = expected.iter().sum();
     for e in &mut expected {
         *e *= total as f64 / sum;
     }
-    Verdict {
-        integral,
-        p_value: chi_square(&counts, &expected),
-    }
+    (integral, chi_square(&counts, &expected))
 }
 
 /// Receivers for which the density is smooth enough for midpoint quadrature: not within a tenth
 /// of a size of the light's plane, where 1/cos³ spans decades.
 fn tame() -> Vec<(Light, DVec3)> {
-    settings()
-        .into_iter()
-        .flat_map(|(light, receivers)| {
-            receivers.into_iter().enumerate().filter_map(move |(i, p)| {
-                let grazing = match light {
-                    Light::Sphere { .. } | Light::Ellipsoid { .. } => 0..0,
-                    Light::Cube { .. } | Light::Cylinder { .. } | Light::Barrel { .. } => 4..5,
-                    _ => 2..5,
-                };
-                let rough = grazing.contains(&i);
-                (!rough).then_some((light, p))
-            })
-        })
-        .collect()
+    let tame = |(light, receivers): (Light, Vec<DVec3>)| {
+        let grazing = match light.shape() {
+            ShapeKind::Sphere => 0..0,
+            ShapeKind::Cube | ShapeKind::Cylinder => 4..5,
+            _ => 2..5,
+        };
+        let receivers = receivers.into_iter().enumerate();
+        receivers.filter_map(move |(i, p)| (!grazing.contains(&i)).then_some((light, p)))
+    };
+    settings().into_iter().flat_map(tame).collect()
 }
 
 #[test]
@@ -622,7 +462,7 @@ fn directions_follow_their_densities_which_integrate_to_one() {
     let level = sidak(FAMILY / 2.0, 2 * settings.len());
     for precision in PRECISIONS {
         for &(light, p) in &settings {
-            let Verdict { integral, p_value } = verdict(light, p, &mut rng, precision, |uv| uv);
+            let (integral, p_value) = verdict((light, p), &mut rng, precision, |uv| uv);
             println!("{precision:?} {light:?} {p}: ∫ = {integral:.5}, p = {p_value:.3}");
             // The outline cuts cells of the quadrature: about 480 steps across.
             assert!((integral - 1.0).abs() < 0.01, "{light:?} {p}: {integral}");
@@ -637,9 +477,9 @@ fn a_bent_map_is_noticed() {
     for (light, receivers) in settings() {
         // A density tilted by ±10 % from one edge to the other.
         let bend = |[u, v]: [f64; 2]| [u, v + 0.1 * v * (1.0 - v)];
-        let verdict = verdict(light, receivers[0], &mut rng, Precision::Double, bend);
-        println!("{light:?}: bent p = {:e}", verdict.p_value);
-        assert!(verdict.p_value < 1e-5, "{light:?}");
+        let (_, p) = verdict((light, receivers[0]), &mut rng, Precision::Double, bend);
+        println!("{light:?}: bent p = {p:e}");
+        assert!(p < 1e-5, "{light:?}");
     }
 }
 
@@ -649,33 +489,26 @@ fn grazing_receivers_see_all_of_a_flat_light_alike() {
     // By area, the points themselves are uniform, however grazing the view.
     let level = sidak(FAMILY / 10.0, 40);
     for precision in PRECISIONS {
-        for (light, receivers) in settings() {
-            let (centre, half) = match light {
-                Light::Parallelogram { centre, half } | Light::Disk { centre, half } => {
-                    (centre, half)
-                }
-                _ => continue,
-            };
-            let normal = half[0].cross(half[1]);
-            for p in receivers {
-                let variates = independent(&mut rng, 20_000);
-                let drawn = best(precision, (light, p), &variates);
-                let mut counts = vec![0; 144];
-                for sample in &drawn {
-                    let at = p + sample.distance * sample.direction - centre;
-                    let x = at.cross(half[1]).dot(normal) / normal.length_squared();
-                    let y = half[0].cross(at).dot(normal) / normal.length_squared();
-                    let (a, b) = if matches!(light, Light::Disk { .. }) {
-                        (x * x + y * y, libm::atan2(y, x) / (2.0 * PI) + 0.5)
-                    } else {
-                        ((x + 1.0) / 2.0, (y + 1.0) / 2.0)
-                    };
-                    let cell = |x: f64| ((x * 12.0) as usize).min(11);
-                    counts[cell(a) * 12 + cell(b)] += 1;
-                }
-                let p_value = chi_square(&counts, &[20_000.0 / 144.0; 144]);
-                assert!(p_value > level, "{light:?} {p}: {p_value:e}");
+        for (light, p) in pairs() {
+            if !matches!(light.kind, Kind::Parallelogram | Kind::Disk) {
+                continue;
             }
+            let inverse = light.linear().inverse();
+            let variates = independent(&mut rng, 20_000);
+            let mut counts = vec![0; 144];
+            for sample in &best(precision, (light, p), &variates) {
+                let at = p + sample.distance * sample.direction - light.centre;
+                let [x, y, _] = (inverse * at).to_array();
+                let (a, b) = if light.kind == Kind::Disk {
+                    (x * x + y * y, libm::atan2(y, x) / (2.0 * PI) + 0.5)
+                } else {
+                    ((x + 1.0) / 2.0, (y + 1.0) / 2.0)
+                };
+                let cell = |x: f64| ((x * 12.0) as usize).min(11);
+                counts[cell(a) * 12 + cell(b)] += 1;
+            }
+            let p_value = chi_square(&counts, &[20_000.0 / 144.0; 144]);
+            assert!(p_value > level, "{light:?} {p}: {p_value:e}");
         }
     }
 }
@@ -688,13 +521,8 @@ fn solid_angle(p: DVec3, centre: DVec3, half: [DVec3; 2]) -> f64 {
         let bottom = la * lb * lc + a.dot(b) * lc + a.dot(c) * lb + b.dot(c) * la;
         2.0 * libm::atan2(a.dot(b.cross(c)).abs(), bottom)
     };
-    let (a, b, c, d) = (
-        corner(-1.0, -1.0),
-        corner(1.0, -1.0),
-        corner(1.0, 1.0),
-        corner(-1.0, 1.0),
-    );
-    triangle(a, b, c) + triangle(a, c, d)
+    let (a, c) = (corner(-1.0, -1.0), corner(1.0, 1.0));
+    triangle(a, corner(1.0, -1.0), c) + triangle(a, c, corner(-1.0, 1.0))
 }
 
 #[test]
@@ -705,19 +533,16 @@ fn a_rectangle_knows_its_solid_angle() {
         let mut worst = 0.0_f64;
         let mut near = 0;
         for _ in 0..4_000 {
-            let half = [
-                DVec3::X * rng.random_range(0.05..2.0),
-                DVec3::Y * rng.random_range(0.05..2.0),
-            ];
+            let half = [DVec3::X, DVec3::Y].map(|axis| axis * rng.random_range(0.05..2.0));
             let centre = DVec3::ZERO;
             let p = DVec3::new(
                 rng.random_range(-3.0..3.0),
                 rng.random_range(-3.0..3.0),
                 libm::exp2(rng.random_range(-12.0..2.0)),
             );
-            let p = DVec3::from_array(p.to_array().map(|x| precision.rounded(x)));
-            let half = half.map(|h| DVec3::from_array(h.to_array().map(|x| precision.rounded(x))));
-            let light = Light::Rectangle { centre, half };
+            let p = rounded(precision, p);
+            let half = half.map(|h| rounded(precision, h));
+            let light = Light::flat(Kind::Rectangle, centre, half);
             // Two directions of different area density tell whether it is uniform.
             let directions = [
                 ((centre - p).normalize(), DVec3::Z),
@@ -740,119 +565,81 @@ fn a_rectangle_knows_its_solid_angle() {
 /// Estimates of the irradiance at p with normal n from 64 replicates of jittered samples.
 fn irradiances(light: Light, (p, n): (DVec3, DVec3), precision: Precision, seed: u64) -> Vec<f64> {
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
-    (0..64)
-        .map(|_| {
-            let variates = variates(&mut rng, 48);
-            let drawn = best(precision, (light, p), &variates);
-            let sum: f64 = drawn
-                .iter()
-                .filter(|s| s.valid)
-                .map(|s| s.direction.dot(n).max(0.0) / s.pdf)
-                .sum();
-            sum / drawn.len() as f64
-        })
-        .collect()
+    let mut estimate = || {
+        let drawn = best(precision, (light, p), &variates(&mut rng, 48));
+        let valid = drawn.iter().filter(|s| s.valid);
+        let sum: f64 = valid.map(|s| s.direction.dot(n).max(0.0) / s.pdf).sum();
+        sum / drawn.len() as f64
+    };
+    (0..64).map(|_| estimate()).collect()
 }
 
-/// Every closed form: light, receiver with normal, irradiance for radiance (or intensity) 1.
+/// Every closed form: light, receiver with normal, irradiance for radiance 1.
 fn closed_forms() -> Vec<(String, Light, (DVec3, DVec3), f64)> {
     let mut all = Vec::new();
-    let number = |v: &serde_json::Value| v.as_f64().unwrap();
-    let vector = |v: &serde_json::Value| DVec3::from_array([0, 1, 2].map(|i| number(&v[i])));
+    let upward = (DVec3::ZERO, DVec3::Z);
     for id in ["polygon_light", "polygon_light_horizon"] {
         let t = truth(id);
-        let v = [0, 1, 3].map(|i| vector(&t["setup"]["V"][i]));
+        let setup = &t["setup"];
+        let v = [0, 1, 3].map(|i| vector(&setup["V"][i]));
         let half = [(v[1] - v[0]) / 2.0, (v[2] - v[0]) / 2.0];
         let centre = v[0] + half[0] + half[1];
-        let at = (vector(&t["setup"]["P"]), vector(&t["setup"]["N"]));
-        let irradiance = number(&t["exact"]["E"]) / number(&t["setup"]["Le"]);
-        all.push((
-            id.to_owned(),
-            Light::Parallelogram { centre, half },
-            at,
-            irradiance,
-        ));
+        let at = (vector(&setup["P"]), vector(&setup["N"]));
+        let irradiance = t.exact("E") / t.of("Le");
         assert!(half[0].dot(half[1]).abs() < 1e-12);
-        all.push((
-            format!("{id}, rectangle"),
-            Light::Rectangle { centre, half },
-            at,
-            irradiance,
-        ));
         // The same light as two far smaller ones would be is left to the picture's own tests.
+        for kind in [Kind::Parallelogram, Kind::Rectangle] {
+            let light = Light::flat(kind, centre, half);
+            all.push((format!("{id}, {kind:?}"), light, at, irradiance));
+        }
     }
     let t = truth("sphere_light");
-    for row in t["exact"]["per_angle"].as_array().unwrap() {
+    for row in t.rows("per_angle") {
         let beta = number(&row["beta_deg"]).to_radians();
-        let centre = number(&t["setup"]["d"]) * DVec3::new(libm::sin(beta), 0.0, libm::cos(beta));
-        let light = Light::Sphere {
-            centre,
-            radius: number(&t["setup"]["r"]),
-        };
-        let irradiance = number(&row["E"]) / number(&t["setup"]["Le"]);
+        let centre = t.of("d") * DVec3::new(libm::sin(beta), 0.0, libm::cos(beta));
+        let light = Light::sphere(centre, t.of("r"));
+        let irradiance = number(&row["E"]) / t.of("Le");
         let name = format!("sphere_light {}°", row["beta_deg"]);
-        all.push((name, light, (DVec3::ZERO, DVec3::Z), irradiance));
+        all.push((name, light, upward, irradiance));
     }
     let t = truth("disk_light");
-    for row in t["exact"]["per_offset"].as_array().unwrap() {
-        let r = number(&t["setup"]["r"]);
-        let centre = DVec3::new(number(&row["a"]), 0.0, number(&t["setup"]["h"]));
-        let light = Light::Disk {
-            centre,
-            half: [DVec3::X * r, DVec3::Y * r],
-        };
-        let irradiance = number(&row["E"]) / number(&t["setup"]["Le"]);
+    for row in t.rows("per_offset") {
+        let centre = DVec3::new(number(&row["a"]), 0.0, t.of("h"));
+        let half = [DVec3::X, DVec3::Y].map(|axis| axis * t.of("r"));
+        let irradiance = number(&row["E"]) / t.of("Le");
         let name = format!("disk_light {}", row["a"]);
-        all.push((name, light, (DVec3::ZERO, DVec3::Z), irradiance));
+        let light = Light::flat(Kind::Disk, centre, half);
+        all.push((name, light, upward, irradiance));
     }
     // Inside a closed light of radiance 1: π, for any shape.
-    let inside = Light::Sphere {
-        centre: DVec3::new(0.1, 0.2, -0.3),
-        radius: 1.0,
-    };
-    all.push((
-        "inside a sphere".into(),
-        inside,
-        (DVec3::ZERO, DVec3::Z),
-        PI,
-    ));
-    let half = [
+    let lean = (DVec3::ZERO, DVec3::new(0.6, 0.0, 0.8));
+    let block = [
         DVec3::X,
         DVec3::new(0.3, 1.0, 0.0),
         DVec3::new(0.1, 0.2, 1.5),
     ];
-    let cube = Light::Cube {
-        centre: DVec3::new(0.2, 0.1, 0.0),
-        half,
-    };
-    all.push(("inside a cube".into(), cube, (DVec3::ZERO, DVec3::Z), PI));
-    let half = [DVec3::X, DVec3::Y, 1.5 * DVec3::Z];
-    let cylinder = |centre: DVec3| Light::Cylinder { centre, half };
-    all.push((
-        "inside a cylinder".into(),
-        cylinder(DVec3::new(0.2, 0.1, 0.3)),
-        (DVec3::ZERO, DVec3::new(0.6, 0.0, 0.8)),
-        PI,
-    ));
-    let (centre, up) = (DVec3::new(0.1, 0.1, 0.3), DVec3::new(0.6, 0.0, 0.8));
-    let half = [
-        DVec3::X,
-        DVec3::new(0.3, 0.6, 0.0),
-        DVec3::new(0.1, 0.2, 1.5),
-    ];
-    for (name, light) in [
-        ("inside an ellipsoid", Light::Ellipsoid { centre, half }),
-        ("inside a leaning cylinder", Light::Barrel { centre, half }),
+    let slim = [block[0], DVec3::new(0.3, 0.6, 0.0), block[2]];
+    let tube = [DVec3::X, DVec3::Y, 1.5 * DVec3::Z];
+    let centre = DVec3::new(0.1, 0.1, 0.3);
+    let ball = Light::sphere(DVec3::new(0.1, 0.2, -0.3), 1.0);
+    for (light, at) in [
+        (ball, upward),
+        (
+            Light::new(Kind::Cube, DVec3::new(0.2, 0.1, 0.0), block),
+            upward,
+        ),
+        (
+            Light::new(Kind::Cylinder, DVec3::new(0.2, 0.1, 0.3), tube),
+            lean,
+        ),
+        (Light::new(Kind::Ellipsoid, centre, slim), lean),
+        (Light::new(Kind::Barrel, centre, slim), lean),
     ] {
-        all.push((name.into(), light, (DVec3::ZERO, up), PI));
+        all.push((format!("inside, {:?}", light.kind), light, at, PI));
     }
     // A receiver on the axis sees the near cap alone, a disk: π sin² of its half-angle.
-    all.push((
-        "on the axis of a cylinder".into(),
-        cylinder(DVec3::new(0.0, 0.0, 3.5)),
-        (DVec3::ZERO, DVec3::Z),
-        PI / 5.0,
-    ));
+    let light = Light::new(Kind::Cylinder, 3.5 * DVec3::Z, tube);
+    all.push(("on the axis of a cylinder".into(), light, upward, PI / 5.0));
     all
 }
 
@@ -864,7 +651,7 @@ fn irradiances_match_the_closed_forms() {
         for (k, (name, light, at, irradiance)) in cases.iter().enumerate() {
             let estimates = irradiances(*light, *at, precision, 100 + k as u64);
             let p = t_test(&estimates, *irradiance);
-            let (mean, variance) = crate::statistics_support::moments(&estimates);
+            let (mean, variance) = moments(&estimates);
             let relative = (variance / 64.0).sqrt() / irradiance;
             println!(
                 "{precision:?} {name}: {:+.1e} ± {relative:.1e}, p = {p:.3}",
@@ -889,14 +676,24 @@ fn irradiances_match_the_closed_forms() {
 
 #[test]
 fn points_fall_off_with_the_square() {
+    fn sample<T: Scalar>(
+        at: DVec3,
+        ask: impl Fn(&LightShape<T>) -> Vec<LightSample>,
+    ) -> LightSample {
+        ask(&LightShape::Point(PointLight::new(at)))[0]
+    }
     let t = truth("point_light");
-    let number = |v: &serde_json::Value| v.as_f64().unwrap();
+    let at = DVec3::Z * t.of("h");
     for precision in PRECISIONS {
-        for row in t["exact"]["per_point"].as_array().unwrap() {
-            let light = Light::Point(DVec3::new(0.0, 0.0, number(&t["setup"]["h"])));
-            let p = DVec3::new(number(&row["x"]), 0.0, 0.0);
-            let drawn = best(precision, (light, p), &[[0.5, 0.5]]);
-            let irradiance = number(&t["setup"]["I"]) * drawn[0].direction.z / drawn[0].pdf;
+        for row in t.rows("per_point") {
+            let p = DVec3::X * number(&row["x"]);
+            let ask =
+                |light: AnyLight| light_samples(Instructions::best(), light, p, &[[0.5, 0.5]]);
+            let drawn = match precision {
+                Precision::Single => sample(at, |light| ask(Made::Single(light))),
+                Precision::Double => sample(at, |light| ask(Made::Double(light))),
+            };
+            let irradiance = t.of("I") * drawn.direction.z / drawn.pdf;
             let error = (irradiance / number(&row["E"]) - 1.0).abs();
             assert!(error < 6.0 * precision.roundoff(), "{error:e}");
         }
@@ -907,24 +704,21 @@ fn points_fall_off_with_the_square() {
 fn all_instruction_sets_draw_the_same_bits() {
     let mut rng = Pcg64Mcg::seed_from_u64(26);
     for precision in PRECISIONS {
-        for (light, receivers) in settings() {
-            for p in receivers {
-                let variates = variates(&mut rng, 8);
-                let from = (light, p);
-                let all = on_each(|set| {
-                    let samples = draw(set, precision, from, &variates);
-                    let asked = asked(set, precision, from, &samples);
-                    samples.into_iter().zip(asked).collect::<Vec<_>>()
-                });
-                for (name, other) in &all[1..] {
-                    for ((a, a_asked), (b, b_asked)) in all[0].1.iter().zip(other) {
-                        let same = a.valid == b.valid
-                            && same_bits(a.pdf, b.pdf)
-                            && same_bits(*a_asked, *b_asked)
-                            && same_bits(a.distance, b.distance)
-                            && a.direction == b.direction;
-                        assert!(same, "{name} {light:?}: {a:?} {b:?}");
-                    }
+        for from in pairs() {
+            let variates = variates(&mut rng, 8);
+            let all = on_each(|set| {
+                let samples = draw(set, precision, from, &variates);
+                let asked = asked(set, precision, from, &samples);
+                samples.into_iter().zip(asked).collect::<Vec<_>>()
+            });
+            for (name, other) in &all[1..] {
+                for ((a, a_asked), (b, b_asked)) in all[0].1.iter().zip(other) {
+                    let same = a.valid == b.valid
+                        && same_bits(a.pdf, b.pdf)
+                        && same_bits(*a_asked, *b_asked)
+                        && same_bits(a.distance, b.distance)
+                        && a.direction == b.direction;
+                    assert!(same, "{name} {:?}: {a:?} {b:?}", from.0);
                 }
             }
         }

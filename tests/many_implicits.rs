@@ -1,38 +1,21 @@
 //! Many implicit surfaces: their hits are those of each asked alone, and a ray asks a few of them.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "the tests' own scenes are right, and what they hold is known"
-)]
-
 use std::fmt::Write as _;
-use std::path::Path;
 
-use etalon::inside::render::{Request, Unwatched, render};
-use etalon::inside::scene;
 use etalon::inside::shape::Ray;
-use etalon::{First, Overrides, Plan, Scene, Tracer};
+use etalon::{First, Plan, Scene, Tracer};
 use glam::DVec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::shape_ladder::cubed;
+use crate::support::rendered;
 
 const HEAD: &str = r#"
-[camera]
-from = [0, 0, 9]
-to = [0, 0, 0]
-fov = 30
-
-[image]
-size = [32, 32]
-spp = 4
-max_depth = 4
-sampler = "independent"
-
-[materials]
-white = { diffuse = 0.75 }
-lamp = { emit = 1 }
+camera = { from = [0, 0, 9], to = [0, 0, 0], fov = 30 }
+image = { size = [32, 32], spp = 4, max_depth = 4, sampler = "independent" }
+materials.white = { diffuse = 0.75 }
+materials.lamp = { emit = 1 }
 
 [[object]]
 shape = { rectangle = { size = [4, 4] } }
@@ -41,7 +24,7 @@ transform = [{ rotate_x = 90 }, { translate = [0, 6, 0] }]
 "#;
 
 /// Small tori and balls, turned anyhow, in a cube of side 4; every `ball_every`-th is a ball.
-fn cloud(objects: usize, ball_every: usize) -> String {
+fn cloud(objects: usize, ball_every: usize) -> Scene {
     let mut rng = Pcg64Mcg::seed_from_u64(11);
     let mut text = String::from(HEAD);
     // A constant share of the lines through the cube meets something, however many there are.
@@ -63,11 +46,7 @@ fn cloud(objects: usize, ball_every: usize) -> String {
         )
         .unwrap();
     }
-    text
-}
-
-fn parsed(text: &str) -> Scene {
-    scene::parse("many", text, Path::new(""), &Overrides::default()).unwrap()
+    Scene::parse(&text).unwrap()
 }
 
 /// Rays from outside towards places in the cloud, and from within it.
@@ -95,22 +74,19 @@ fn hit(tracer: &Tracer, ray: Ray) -> Option<(usize, f64)> {
 
 #[test]
 fn the_first_hit_among_many_is_the_first_of_the_single_ones() {
-    let scene = parsed(&cloud(120, 4));
+    let scene = cloud(120, 4);
     let many = Tracer::new(&scene).unwrap();
-    let single: Vec<Tracer> = (0..scene.objects.len())
-        .map(|k| {
-            let mut alone = scene.clone();
-            alone.objects = vec![scene.objects[k].clone()];
-            Tracer::new(&alone).unwrap()
-        })
-        .collect();
+    let alone = |k: usize| {
+        let mut alone = scene.clone();
+        alone.objects = vec![scene.objects[k].clone()];
+        Tracer::new(&alone).unwrap()
+    };
+    let single: Vec<Tracer> = (0..scene.objects.len()).map(alone).collect();
     let mut hits = 0;
     for ray in rays(400) {
-        let first = single
-            .iter()
-            .enumerate()
-            .filter_map(|(k, tracer)| Some((k, hit(tracer, ray)?.1)))
-            .min_by(|a, b| a.1.total_cmp(&b.1));
+        let each = single.iter().enumerate();
+        let each = each.filter_map(|(k, tracer)| Some((k, hit(tracer, ray)?.1)));
+        let first = each.min_by(|a, b| a.1.total_cmp(&b.1));
         assert_eq!(hit(&many, ray), first, "{ray:?}");
         hits += usize::from(first.is_some());
     }
@@ -120,26 +96,21 @@ fn the_first_hit_among_many_is_the_first_of_the_single_ones() {
 /// A ray that misses every box meets nothing, whatever its direction's components are.
 #[test]
 fn rays_along_the_axes_ask_the_index_too() {
-    let scene = parsed(&cloud(120, 4));
+    let scene = cloud(120, 4);
     let tracer = Tracer::new(&scene).unwrap();
-    let clear = Ray {
-        origin: DVec3::new(-50.0, 40.0, 0.0),
-        direction: DVec3::X,
+    let along = |[x, y, z]: [f64; 3], direction| {
+        let origin = DVec3::new(x, y, z);
+        hit(&tracer, Ray { origin, direction })
     };
-    assert_eq!(hit(&tracer, clear), None);
-    let at_lamp = Ray {
-        origin: DVec3::new(0.5, 50.0, 0.5),
-        direction: -DVec3::Y,
-    };
-    assert_eq!(hit(&tracer, at_lamp), Some((0, 44.0)));
+    assert_eq!(along([-50.0, 40.0, 0.0], DVec3::X), None);
+    assert_eq!(along([0.5, 50.0, 0.5], -DVec3::Y), Some((0, 44.0)));
 }
 
 /// Questions about implicit surfaces for each ray of a small render, all bounces and shadows.
 fn questions_a_ray(objects: usize) -> f64 {
-    let scene = parsed(&cloud(objects, usize::MAX));
+    let scene = cloud(objects, usize::MAX);
     let plan = Plan::new(&scene, false).unwrap();
-    let request = Request::whole(scene.image.size, scene.image.spp);
-    let rungs = render(&plan, &request, &mut Unwatched).rungs;
+    let rungs = rendered(&scene, &plan).rungs;
     rungs.implicit.rays() as f64 / rungs.rays as f64
 }
 

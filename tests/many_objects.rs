@@ -1,12 +1,5 @@
 //! Many objects: the hierarchy gives the hits of the list, whoever shares the packet.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "the tests' own scenes are right, and what they hold is known"
-)]
-
-use std::path::Path;
-
 use etalon::inside::integrate::intersect::NOTHING;
 use etalon::inside::integrate::model::{Many, Model};
 use etalon::inside::math::lanes::Scalar;
@@ -17,7 +10,7 @@ use etalon::inside::scene;
 use etalon::inside::shape::Ray;
 use etalon::inside::shape::hierarchy::Item;
 use etalon::inside::spectrum::grid::WavelengthGrid;
-use etalon::{Instructions, Overrides, Scene};
+use etalon::{Instructions, Scene};
 use etalon_doors::Made;
 use etalon_doors::models::{self, Answer, AnyModel, Asking, Question};
 use glam::DVec3;
@@ -28,18 +21,10 @@ use crate::lanes_support::{PRECISIONS, Precision, on_each};
 use crate::shape_ladder::cubed;
 
 const HEAD: &str = r#"
-[camera]
-from = [0, 0, 6]
-to = [0, 0, 0]
-fov = 40
-
-[image]
-size = [8, 8]
-spp = 1
-
-[materials]
-white = { diffuse = 0.75 }
-lamp = { emit = 1 }
+camera = { from = [0, 0, 6], to = [0, 0, 0], fov = 40 }
+image = { size = [8, 8], spp = 1 }
+materials.white = { diffuse = 0.75 }
+materials.lamp = { emit = 1 }
 
 [[object]]
 shape = { plane = {} }
@@ -52,15 +37,17 @@ material = "lamp"
 transform = [{ rotate_x = 90 }, { translate = [0, 2, 0] }]
 "#;
 
+fn ball([x, y, z]: [f64; 3], radius: f64) -> String {
+    format!(
+        "[[object]]\nshape = {{ sphere = {{ radius = {radius} }} }}\nmaterial = \"white\"\n\
+         transform = [{{ translate = [{x}, {y}, {z}] }}]\n"
+    )
+}
+
 /// A cloud of balls, among them large, touching and overlapping ones, and `others` of other shapes.
 fn cloud(balls: usize, others: usize) -> Scene {
     let mut rng = Pcg64Mcg::seed_from_u64(3);
     let mut text = String::from(HEAD);
-    let mut object = |shape: String, placed: String| {
-        text += &format!(
-            "\n[[object]]\nshape = {{ {shape} }}\nmaterial = \"white\"\ntransform = [{placed}]\n"
-        );
-    };
     for i in 0..balls {
         // On a grid of touching balls, every third one beside it.
         let grid = [i % 7, i / 7 % 7, i / 49].map(|k| (k as f64 - 3.0) / 2.0);
@@ -70,10 +57,7 @@ fn cloud(balls: usize, others: usize) -> Scene {
             grid
         };
         let radius = if i % 50 == 49 { 0.75 } else { 0.25 };
-        object(
-            format!("sphere = {{ radius = {radius} }}"),
-            format!("{{ translate = [{x}, {y}, {z}] }}"),
-        );
+        text += &ball([x, y, z], radius);
     }
     for i in 0..others {
         let shape = [
@@ -85,14 +69,12 @@ fn cloud(balls: usize, others: usize) -> Scene {
         ][i % 5];
         let [x, y, z] = (2.0 * cubed(&mut rng)).to_array();
         let angle = [0.0, 90.0, 360.0 * rng.random::<f64>()][i % 3];
-        object(
-            shape.into(),
-            format!(
-                "{{ rotate_x = {angle} }}, {{ scale = [1, 1, 1.5] }}, {{ translate = [{x}, {y}, {z}] }}"
-            ),
+        text += &format!(
+            "[[object]]\nshape = {{ {shape} }}\nmaterial = \"white\"\ntransform = [\
+             {{ rotate_x = {angle} }}, {{ scale = [1, 1, 1.5] }}, {{ translate = [{x}, {y}, {z}] }}]\n"
         );
     }
-    scene::parse("cloud", &text, Path::new("."), &Overrides::default()).unwrap()
+    Scene::parse(&text).unwrap()
 }
 
 fn items(scene: &Scene) -> Vec<Item> {
@@ -100,12 +82,8 @@ fn items(scene: &Scene) -> Vec<Item> {
         let bounds = bounds(&object.value.shape, &about_camera(scene, &object.value))?;
         Some((k as u32, bounds))
     };
-    scene
-        .objects
-        .iter()
-        .enumerate()
-        .filter_map(with_bounds)
-        .collect()
+    let objects = scene.objects.iter().enumerate();
+    objects.filter_map(with_bounds).collect()
 }
 
 /// How the objects are looked through.
@@ -287,14 +265,9 @@ fn balls_are_found_from_afar() {
     let mut text = String::from(&HEAD[..HEAD.find("[[object]]").unwrap()]);
     let mut rng = Pcg64Mcg::seed_from_u64(9);
     for _ in 0..BALLS {
-        let [x, y, z] = cubed(&mut rng).to_array();
-        let radius = rng.random_range(0.05..0.3);
-        text += &format!(
-            "[[object]]\nshape = {{ sphere = {{ radius = {radius} }} }}\nmaterial = \"white\"\n\
-             transform = [{{ translate = [{x}, {y}, {z}] }}]\n"
-        );
+        text += &ball(cubed(&mut rng).to_array(), rng.random_range(0.05..0.3));
     }
-    let scene = scene::parse("balls", &text, Path::new("."), &Overrides::default()).unwrap();
+    let scene = Scene::parse(&text).unwrap();
     let [aimed, past] = [true, false].map(|aimed| from_afar(&scene, aimed));
     for precision in PRECISIONS {
         for (name, sets) in near(&scene, precision, &aimed) {

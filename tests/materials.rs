@@ -2,21 +2,14 @@
 //! the list of materials and over a surface that is Lambertian, a modified Phong lobe and a mirror at
 //! once. Parameters come from what the materials declare, so that a new one is tested unasked.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "the tests' own scenes are right, and what they hold is known"
-)]
-
 use std::f64::consts::TAU;
 use std::ops::Bound;
-use std::path::Path;
 
-use etalon::Overrides;
 use etalon::inside::declare::{Declaration, Quantity, Range};
 use etalon::inside::material::{MaterialKind, Transport};
 use etalon::inside::math::instructions::Precision;
-use etalon::inside::scene;
 use etalon::inside::stats::family::sidak;
+use etalon::{Scene, SceneError};
 use etalon_doors::material::{
     C, Evaluation, Sample, Setting, Subject, evaluate_each, lambertian_and_general, sample_each,
 };
@@ -25,6 +18,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::statistics_support::{chi_square, normal_p, t_test};
+use crate::support::assert_says;
 
 /// Probability of a false alarm of one suite over all its cases.
 const LEVEL: f64 = 1e-4;
@@ -147,36 +141,32 @@ fn cases() -> Vec<Case> {
     let tangent = DVec3::new(0.8, 0.6, 0.0);
     for (subject, spectra, numbers) in subjects() {
         let refracts = matches!(subject, Subject::Listed(kind) if kind.refracts());
+        let mut add = |n, angle: f64, front, transport, precision| {
+            for ended in [false, true].into_iter().take(1 + usize::from(refracts)) {
+                let setting = Setting {
+                    precision,
+                    transport,
+                    normal,
+                    front,
+                    wo: angle.cos() * normal + angle.sin() * tangent,
+                    spectra,
+                    numbers,
+                    outside: [n; C],
+                    disperses: refracts,
+                    ended,
+                    hero: 2,
+                };
+                cases.push(Case { subject, setting });
+            }
+        };
         // Vacuum, water, and something denser than the inside.
         for n in [1.0, 1.33, 1.7] {
             for angle in ANGLES.map(f64::to_radians) {
-                for (front, transport) in [
-                    (true, Transport::Radiance),
-                    (false, Transport::Radiance),
-                    (true, Transport::Importance),
-                    (false, Transport::Importance),
-                ] {
-                    for precision in Precision::ALL {
-                        let setting = Setting {
-                            precision,
-                            transport,
-                            normal,
-                            front,
-                            wo: angle.cos() * normal + angle.sin() * tangent,
-                            spectra,
-                            numbers,
-                            outside: [n; C],
-                            disperses: refracts,
-                            ended: false,
-                            hero: 2,
-                        };
-                        let ended = Setting {
-                            ended: true,
-                            ..setting.clone()
-                        };
-                        let both = [setting, ended].into_iter();
-                        let few = both.take(1 + usize::from(refracts));
-                        cases.extend(few.map(|setting| Case { subject, setting }));
+                for transport in [Transport::Radiance, Transport::Importance] {
+                    for front in [true, false] {
+                        for precision in Precision::ALL {
+                            add(n, angle, front, transport, precision);
+                        }
                     }
                 }
             }
@@ -196,18 +186,16 @@ fn drawn() -> Vec<[f64; 3]> {
 /// The indices on the near and on the far side of wo, at each wavelength.
 fn indices(setting: &Setting) -> [[f64; C]; 2] {
     let (inside, outside) = (setting.spectra[0], setting.outside);
-    if setting.front {
-        [outside, inside]
-    } else {
-        [inside, outside]
+    match setting.front {
+        true => [outside, inside],
+        false => [inside, outside],
     }
 }
 
 /// The distinct delta events of a case.
 fn delta_events(contract: Contract, case: &Case) -> Vec<Sample> {
-    let choices: Vec<[f64; 3]> = (0..1 << 12)
-        .map(|i| [f64::from(i) / f64::from(1 << 12), 0.25, 0.5])
-        .collect();
+    let choices = (0..1 << 12).map(|i| [f64::from(i) / f64::from(1 << 12), 0.25, 0.5]);
+    let choices: Vec<[f64; 3]> = choices.collect();
     let mut events: Vec<Sample> = Vec::new();
     for event in (contract.sample)(case.subject, &case.setting, &choices) {
         let new = |other: &Sample| other.transmitted != event.transmitted;
@@ -220,20 +208,13 @@ fn delta_events(contract: Contract, case: &Case) -> Vec<Sample> {
 
 /// Reflection and refraction go where their laws send them.
 fn laws(contract: Contract, case: &Case) -> Result<(), String> {
-    let Setting {
-        precision,
-        normal,
-        wo,
-        hero,
-        disperses,
-        ended,
-        ..
-    } = case.setting;
+    let setting = &case.setting;
+    let (precision, normal, wo) = (setting.precision, setting.normal, setting.wo);
     // A direction is the sum of two rounded ones, enlarged at most by the smaller index.
     let allowed = 32.0 * precision.roundoff();
     for event in delta_events(contract, case) {
         let wi = event.direction;
-        let [near, far] = indices(&case.setting).map(|n| n[hero]);
+        let [near, far] = indices(setting).map(|n| n[setting.hero]);
         let cosine = wo.dot(normal);
         let want = if event.transmitted {
             // Snell's law for the tangential parts; what is left is the cosine.
@@ -243,10 +224,9 @@ fn laws(contract: Contract, case: &Case) -> Result<(), String> {
             2.0 * cosine * normal - wo
         };
         // Near the critical angle the cosine is the root of a small difference.
-        let steep = if event.transmitted {
-            1.0 / want.dot(normal).abs().max(precision.roundoff().sqrt())
-        } else {
-            1.0
+        let steep = match event.transmitted {
+            true => 1.0 / want.dot(normal).abs().max(precision.roundoff().sqrt()),
+            false => 1.0,
         };
         let off = (wi - want).length();
         if off > allowed * steep {
@@ -255,7 +235,7 @@ fn laws(contract: Contract, case: &Case) -> Result<(), String> {
         if (wi.length() - 1.0).abs() > allowed {
             return Err(format!("{wi} is not of unit length"));
         }
-        if event.ends != (event.transmitted && disperses && !ended) {
+        if event.ends != (event.transmitted && setting.disperses && !setting.ended) {
             return Err("wavelengths end where they should not, or live".to_owned());
         }
     }
@@ -314,13 +294,7 @@ fn frequencies(contract: Contract, case: &Case, u: &[[f64; 3]]) -> Vec<f64> {
 
 /// The way back has the density that the event says, and as much goes there.
 fn way_back(contract: Contract, case: &Case, u: &[[f64; 3]]) -> Result<(), String> {
-    let Setting {
-        precision,
-        normal,
-        front,
-        wo,
-        ..
-    } = case.setting;
+    let (normal, wo) = (case.setting.normal, case.setting.wo);
     let events = (contract.sample)(case.subject, &case.setting, &u[..64]);
     for event in events.iter().filter(|event| event.pdf > 0.0) {
         let side = if event.transmitted { -1.0 } else { 1.0 };
@@ -329,7 +303,7 @@ fn way_back(contract: Contract, case: &Case, u: &[[f64; 3]]) -> Result<(), Strin
         }
         let back = case.with(Setting {
             normal: side * normal,
-            front: front != event.transmitted,
+            front: case.setting.front != event.transmitted,
             wo: event.direction,
             // The way back is one of those wavelengths that go on.
             ended: case.setting.ended || event.ends,
@@ -338,20 +312,14 @@ fn way_back(contract: Contract, case: &Case, u: &[[f64; 3]]) -> Result<(), Strin
         // What refracts comes back along the surface with the cosine c = √(1 − η² sin²), where sin² is
         // off by a few roundings u: c is off by u/c, which is u/c² of itself, and so is what enters.
         let grazing = wo.dot(normal).abs();
-        let magnified = if event.transmitted {
-            4.0 / (grazing * grazing)
-        } else {
-            0.0
-        };
+        let magnified = f64::from(u8::from(event.transmitted)) * 4.0 / (grazing * grazing);
         let close = |a: f64, b: f64, what: &str| {
             // Densities of sharp lobes and reflectances at grazing angles magnify what directions
             // are off by; at the largest angle by a few hundred.
-            let allowed = (4096.0 + magnified) * precision.roundoff() * a.abs().max(b.abs());
-            if (a - b).abs() <= allowed {
-                Ok(())
-            } else {
-                Err(format!("{what}: {a} and {b} for {event:?}"))
-            }
+            let relative = (4096.0 + magnified) * case.setting.precision.roundoff();
+            let allowed = relative * a.abs().max(b.abs());
+            let words = || format!("{what}: {a} and {b} for {event:?}");
+            ((a - b).abs() <= allowed).then_some(()).ok_or_else(words)
         };
         if event.delta {
             let events = delta_events(contract, &back);
@@ -398,7 +366,6 @@ fn sphere(normal: DVec3) -> Vec<DVec3> {
     (0..ROWS * COLUMNS).map(cell).collect()
 }
 
-/// The bin of a cell.
 fn bin(row: usize, column: usize) -> usize {
     row / BIN[0] * (COLUMNS / BIN[1]) + column / BIN[1]
 }
@@ -429,10 +396,8 @@ fn densities(contract: Contract, case: &Case, u: &[[f64; 3]]) -> (Option<f64>, f
     for expected in &mut expected {
         *expected *= drawn as f64 / integral;
     }
-    (
-        (drawn > 1000).then(|| chi_square(&counts, &expected)),
-        integral,
-    )
+    let p_value = (drawn > 1000).then(|| chi_square(&counts, &expected));
+    (p_value, integral)
 }
 
 /// The share of the light that goes on, by integration of `evaluate` and the delta events, and the
@@ -473,10 +438,8 @@ fn spread(case: &Case) -> bool {
 }
 
 fn all(what: &str, cases: &[Case], test: impl Fn(&Case) -> Result<(), String>) {
-    let wrong: Vec<String> = cases
-        .iter()
-        .filter_map(|case| Some(format!("{}: {}", case.name(), test(case).err()?)))
-        .collect();
+    let words = |case: &Case| Some(format!("{}: {}", case.name(), test(case).err()?));
+    let wrong: Vec<String> = cases.iter().filter_map(words).collect();
     let shown = wrong.iter().take(8).cloned().collect::<Vec<_>>().join("\n");
     assert!(wrong.is_empty(), "{what}, {} wrong:\n{shown}", wrong.len());
 }
@@ -489,14 +452,9 @@ fn no_alarm(p_values: &[f64]) -> bool {
 /// Those whose statistics are worth their time: each subject and angle once.
 fn few() -> Vec<Case> {
     let few = |case: &Case| {
-        let Setting {
-            transport,
-            front,
-            outside,
-            ended,
-            ..
-        } = case.setting;
-        transport == Transport::Radiance && front && outside[0] == 1.0 && !ended
+        let setting = &case.setting;
+        let outside = setting.front && setting.outside[0] == 1.0;
+        setting.transport == Transport::Radiance && outside && !setting.ended
     };
     cases().into_iter().filter(few).collect()
 }
@@ -526,12 +484,8 @@ fn events_and_directions_are_as_frequent_as_they_say() {
         let (p_value, integral) = densities(RIGHT, &case, &u);
         let delta: f64 = delta_events(RIGHT, &case).iter().map(|e| e.pdf).sum();
         let something = spread(&case) || delta > 0.0;
-        let whole = if something { 1.0 } else { 0.0 };
-        assert!(
-            (integral + delta - whole).abs() < GRID,
-            "{}: {integral}",
-            case.name()
-        );
+        let off = integral + delta - f64::from(u8::from(something));
+        assert!(off.abs() < GRID, "{}: {integral}", case.name());
         p_values.extend(p_value);
     }
     assert!(no_alarm(&p_values), "{p_values:?}");
@@ -549,9 +503,8 @@ fn a_furnace_shows_what_evaluate_says_and_nothing_shines() {
         } else {
             1.0
         };
-        let dark = share
-            .iter()
-            .all(|share| (0.0..=most + GRID).contains(share));
+        let mut share_of = share.iter();
+        let dark = share_of.all(|share| (0.0..=most + GRID).contains(share));
         assert!(dark, "{}: {share:?}", case.name());
         p_values.extend(own);
     }
@@ -573,11 +526,7 @@ fn too_dense(subject: Subject, setting: &Setting, wi: &[DVec3]) -> Vec<Evaluatio
 fn too_heavy(subject: Subject, setting: &Setting, u: &[[f64; 3]]) -> Vec<Sample> {
     let heavier = |event: Sample| Sample {
         weight: event.weight.map(|weight| 1.05 * weight),
-        pdf: if event.delta {
-            event.pdf * 0.9
-        } else {
-            event.pdf
-        },
+        pdf: event.pdf * if event.delta { 0.9 } else { 1.0 },
         direction: (event.direction + 1e-3 * setting.normal).normalize(),
         ..event
     };
@@ -624,18 +573,13 @@ fn lambertian_surfaces_are_lit_alike_the_short_way_and_the_general() {
     let mut rng = Pcg64Mcg::seed_from_u64(2);
     for case in cases() {
         let setting = &case.setting;
-        let diffuse = case.subject == Subject::Listed(MaterialKind::Diffuse);
-        if !diffuse {
+        if case.subject != Subject::Listed(MaterialKind::Diffuse) {
             continue;
         }
         for _ in 0..256 {
             let [x, y, z] = [0; 3].map(|_| rng.random_range(-1.0..1.0));
             let wi = DVec3::new(x, y, z).normalize();
-            let wi = if wi.dot(setting.normal) < 0.0 {
-                -wi
-            } else {
-                wi
-            };
+            let wi = wi * wi.dot(setting.normal).signum();
             let pdf = f64::exp2(rng.random_range(-12.0..12.0));
             for extended in [true, false] {
                 let [special, general] = lambertian_and_general(setting, wi, pdf, extended);
@@ -673,12 +617,12 @@ fn written(declaration: &Declaration, number: impl Fn(&Range) -> f64) -> String 
     format!("{{ {} = {main}{beside} }}", declaration.main.key)
 }
 
-fn read(material: &str) -> Result<scene::Scene, scene::SceneError> {
-    let text = format!(
-        "[camera]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nfov = 40\n[image]\nsize = [1, 1]\nspp = 1\n\
-         [materials]\nm = {material}\n"
-    );
-    scene::parse("test.toml", &text, Path::new(""), &Overrides::default())
+fn read(material: &str) -> Result<Scene, SceneError> {
+    Scene::parse(&format!(
+        "camera = {{ from = [0, 0, 0], to = [1, 0, 0], fov = 40 }}\n\
+         image = {{ size = [1, 1], spp = 1 }}\n\
+         materials.m = {material}\n"
+    ))
 }
 
 #[test]
@@ -698,22 +642,14 @@ fn materials_are_read_as_they_declare_themselves() {
                 let wrong = written(&declaration, |_| -1e9);
                 assert!(!range.contains(-1e9));
                 let error = read(&wrong).unwrap_err().to_string();
-                assert!(
-                    error.contains(own.key) && error.contains(&range.words()),
-                    "{error}"
-                );
+                assert_says(&error, &[own.key, &range.words()]);
             }
         }
         let beside = declaration.beside.iter().map(|own| own.key);
-        for key in beside
-            .chain(declaration.within)
-            .chain([declaration.main.key])
-        {
+        let keys = beside.chain(declaration.within);
+        for key in keys.chain([declaration.main.key]) {
             let known = guide.contains(&format!("`{key}`")) || guide.contains(&format!("{key} ="));
-            assert!(
-                known || cfg!(feature = "planted"),
-                "{key} is not in scenes/README.md"
-            );
+            assert!(known || cfg!(feature = "planted"), "no guide to {key}");
         }
     }
 }

@@ -5,24 +5,15 @@
 //! off by λ = 1 + g + √((1 + g)² − 1), the larger eigenvalue of the ray matrix of a convex mirror of
 //! radius 1 and a gap g (trace 2 + 2g, determinant 1; Gerrard and Burch 1975, ch. II).
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a malformed oracle file must fail the test"
-)]
-
-use std::path::Path;
-
 use etalon::inside::math::affine::Affine;
 use etalon::inside::math::lanes::Scalar;
 use etalon::inside::plan::Tables;
-use etalon::inside::plan::choose::Precision;
-use etalon::inside::scene::parse;
 use etalon::inside::shape::{Placed, Ray, ShapeKind, Start, Tally};
-use etalon::{Overrides, Plan};
+use etalon::{Plan, Scene};
 use etalon_doors::Made;
 use etalon_doors::models::path_lengths;
 
-use crate::oracle_support::{Row, number, rows, vector};
+use crate::oracle_support::{Row, number, ray, rows};
 
 /// The error that ends a count of bounces.
 const ERROR: f64 = 1e-6;
@@ -33,7 +24,6 @@ struct Chain {
     id: String,
     gap: f64,
     ray: Ray,
-    /// Path lengths.
     each: Vec<f64>,
 }
 
@@ -42,10 +32,7 @@ fn chain(row: &Row) -> Chain {
     Chain {
         id: row["id"].clone(),
         gap: number(row, "gap"),
-        ray: Ray {
-            origin: vector(row, ["ox", "oy", "oz"]),
-            direction: vector(row, ["dx", "dy", "dz"]),
-        },
+        ray: ray(row),
         each: each.collect(),
     }
 }
@@ -65,14 +52,14 @@ impl Chain {
             )
         };
         let text = format!(
-            "[camera]\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nfov = 40\n\
-             [image]\nsize = [256, 256]\nspp = 1\nprecision = \"{precision}\"\n\
-             wavelengths = {WAVELENGTHS}\n\
-             [materials]\nmirror = {{ mirror = {{ ideal = 1 }} }}\n{}{}",
+            "camera = {{ from = [0, 0, 0], to = [1, 0, 0], fov = 40 }}\n\
+             image = {{ size = [256, 256], spp = 1, precision = \"{precision}\", \
+             wavelengths = {WAVELENGTHS} }}\n\
+             materials.mirror = {{ mirror = {{ ideal = 1 }} }}\n{}{}",
             mirror(-self.centre()),
             mirror(self.centre())
         );
-        let scene = parse("mirrors.toml", &text, Path::new(""), &Overrides::default()).unwrap();
+        let scene = Scene::parse(&text).unwrap();
         Plan::new(&scene, false).unwrap()
     }
 
@@ -126,17 +113,14 @@ fn by_printed_hits(chain: &Chain) -> Vec<f64> {
 #[test]
 fn chains_of_mirrors_stay_true_as_long_as_their_digits_last() {
     let mut table = String::from("| chain | gap | bounces | f32 | f64 | default | trace |\n");
-    for row in &rows(include_str!("data/mirrors.csv")) {
+    for row in &rows("mirrors.csv") {
         let chain = chain(row);
         let plans = ["f32", "f64", "auto"].map(|precision| chain.plan(precision));
         let [single, double, default] = plans
             .each_ref()
             .map(|plan| chain.score(&by_the_loop(plan, &chain)));
         let printed = chain.score(&by_printed_hits(&chain));
-        let name = match plans[2].choices.precision {
-            Precision::Single => "f32",
-            Precision::Double => "f64",
-        };
+        let name = plans[2].choices.precision.name();
         table += &format!(
             "| {} | {:e} | {} | {single} | {double} | {default} ({name}) | {printed} |\n",
             chain.id,

@@ -1,11 +1,6 @@
 //! The general way of direct light in the loop, by the surface that only builds with the feature
 //! `planted` have: `cargo test --release --features planted --test tests phong_pictures`.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "the tests' own scenes are right, and what they hold is known"
-)]
-
 use std::f64::consts::TAU;
 
 use etalon::inside::material::Transport;

@@ -1,12 +1,5 @@
 //! What single precision may blur: the plan's bounds over invented scenes of all scales.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "the tests' own scenes are right, and what they hold is known"
-)]
-
-use std::fmt::Write as _;
-
 use etalon::inside::integrate::chunk::Request;
 use etalon::inside::math::instructions::{Instructions, Precision};
 use etalon::inside::math::lanes::Scalar;
@@ -45,12 +38,14 @@ fn direction(rng: &mut Pcg64Mcg) -> DVec3 {
 
 /// A shape stretched to `sizes` half along its axes, turned, and put at `centre`.
 fn object(rng: &mut Pcg64Mcg, sizes: [f64; 3], centre: DVec3) -> String {
+    let rectangle = "rectangle = { size = [2, 2] }";
+    let [cube, cylinder] = ["cube = { side = 2 }", "cylinder = { height = 2 }"];
     let shapes = [
         "sphere = {}",
-        "cube = { side = 2 }",
-        "cylinder = { height = 2 }",
+        cube,
+        cylinder,
         "disk = {}",
-        "rectangle = { size = [2, 2] }",
+        rectangle,
         "plane = {}",
     ];
     let shape = shapes[rng.random_range(0..shapes.len())];
@@ -60,13 +55,23 @@ fn object(rng: &mut Pcg64Mcg, sizes: [f64; 3], centre: DVec3) -> String {
     } else {
         [0.0, [0.0, 90.0][rng.random_range(0..2)]]
     };
-    format!(
-        "[[object]]\nshape = {{ {shape} }}\nmaterial = \"m\"\ntransform = [{{ scale = [{a:e}, {b:e}, \
-         {c:e}] }}, {{ rotate_x = {} }}, {{ rotate_y = {} }}, {{ translate = {:?} }}]\n",
+    let transform = format!(
+        "{{ scale = [{a:e}, {b:e}, {c:e}] }}, {{ rotate_x = {} }}, {{ rotate_y = {} }}, \
+         {{ translate = {:?} }}",
         turns[0],
         turns[1],
         centre.to_array()
-    )
+    );
+    placed(shape, &transform)
+}
+
+fn placed(shape: &str, transform: &str) -> String {
+    format!("[[object]]\nshape = {{ {shape} }}\nmaterial = \"m\"\ntransform = [{transform}]\n")
+}
+
+fn ball(centre: [f64; 3], radius: f64) -> String {
+    let shape = format!("sphere = {{ radius = {radius:e} }}");
+    placed(&shape, &format!("{{ translate = {centre:?} }}"))
 }
 
 impl Invented {
@@ -104,16 +109,18 @@ impl Invented {
     }
 
     fn scene(&self, precision: &str) -> Scene {
-        let mut text = format!(
+        let text = format!(
             "{}environment = 1\nimage = {{ size = [{SIZE}, {SIZE}], spp = 1, max_depth = 1, sampler = \
-             \"center\", precision = \"{precision}\" }}\nmaterials.m = {{ diffuse = 0.5 }}\n",
-            self.camera
+             \"center\", precision = \"{precision}\" }}\nmaterials.m = {{ diffuse = 0.5 }}\n{}",
+            self.camera,
+            self.objects.concat()
         );
-        for object in &self.objects {
-            text.write_str(object).unwrap();
-        }
         Scene::parse(&text).unwrap()
     }
+}
+
+fn plan(scene: &Scene) -> Plan {
+    Plan::new(scene, false).unwrap()
 }
 
 fn single(scene: &Scene) -> Blur {
@@ -159,19 +166,18 @@ fn another_object_never_loosens_a_bound() {
 #[test]
 fn thin_slabs_are_as_bad_behind_a_ball() {
     let slab = |y: f64| {
-        format!(
-            "[[object]]\nshape = {{ cube = {{}} }}\nmaterial = \"m\"\ntransform = [{{ scale = [4000, \
-             1e-3, 4000] }}, {{ rotate_z = 30 }}, {{ translate = [0, {y}, 0] }}]\n"
+        let thin = "{ scale = [4000, 1e-3, 4000] }, { rotate_z = 30 }";
+        placed(
+            "cube = {}",
+            &format!("{thin}, {{ translate = [0, {y}, 0] }}"),
         )
     };
-    let ball = "[[object]]\nshape = { sphere = { radius = 0.01 } }\nmaterial = \"m\"\n\
-                transform = [{ translate = [0, 0, 4999] }]\n";
     let mut invented = Invented {
         camera: "camera = { from = [0, 0, 5000], to = [0, 0, 0], fov = 40 }\n".into(),
         objects: vec![slab(1.0), slab(-1.0)],
     };
     let alone = single(&invented.scene("auto"));
-    invented.objects.insert(0, ball.into());
+    invented.objects.insert(0, ball([0.0, 0.0, 4999.0], 0.01));
     let behind = single(&invented.scene("auto"));
     assert!(behind.position >= alone.position && behind.pixels >= alone.pixels);
 }
@@ -180,22 +186,12 @@ fn thin_slabs_are_as_bad_behind_a_ball() {
 fn a_pixel_is_as_wide_as_at_the_nearest_point() {
     let mut invented = Invented {
         camera: "camera = { from = [0, 0.02, 0], to = [0, 0, -0.3], fov = 60 }\n".into(),
-        objects: vec![
-            "[[object]]\nshape = { sphere = { radius = 1000 } }\nmaterial = \"m\"\n\
-             transform = [{ translate = [0, -1000, 0] }]\n"
-                .into(),
-        ],
+        objects: vec![ball([0.0, -1000.0, 0.0], 1000.0)],
     };
-    let precision = |invented: &Invented| {
-        let plan = Plan::new(&invented.scene("auto"), false).unwrap();
-        plan.choices.precision
-    };
+    let precision = |invented: &Invented| plan(&invented.scene("auto")).choices.precision;
     assert_eq!(precision(&invented), Precision::Double);
     // A plane in the ball's place is as far off as its distance is.
-    invented.objects = vec![
-        "[[object]]\nshape = { plane = {} }\nmaterial = \"m\"\ntransform = [{ rotate_x = -90 }]\n"
-            .into(),
-    ];
+    invented.objects = vec![placed("plane = {}", "{ rotate_x = -90 }")];
     assert_eq!(precision(&invented), Precision::Single);
 }
 
@@ -221,19 +217,13 @@ fn the_tree_finds_the_gap_that_pairs_have() {
 /// A grid of balls of radius 0.4 a unit apart, two of them closer.
 #[test]
 fn a_gap_is_found_among_many_objects() {
-    let ball = |[x, y, z]: [f64; 3]| {
-        format!(
-            "[[object]]\nshape = {{ sphere = {{ radius = 0.4 }} }}\nmaterial = \"m\"\n\
-             transform = [{{ translate = [{x:?}, {y:?}, {z:?}] }}]\n"
-        )
-    };
     let place = |i: usize| [i % 10, i / 10 % 10, i / 100].map(|x| x as f64);
     let mut invented = Invented {
         camera: "camera = { from = [0, 0, 50], to = [0, 0, 0], fov = 40 }\n".into(),
-        objects: (0..1000).map(|i| ball(place(i))).collect(),
+        objects: (0..1000).map(|i| ball(place(i), 0.4)).collect(),
     };
     let [x, y, z] = place(437);
-    invented.objects[437] = ball([x, y + 0.1875, z]);
+    invented.objects[437] = ball([x, y + 0.1875, z], 0.4);
     let gap = single(&invented.scene("auto")).gap.unwrap();
     // Coordinates are rounded to 2⁻⁴⁷ at the camera's distance.
     assert!((gap - 0.0125).abs() < 1e-13, "{gap:e}");
@@ -265,25 +255,14 @@ fn is_inner(
         let turn = f64::from(i) * std::f64::consts::FRAC_PI_4;
         let aside = (a * turn.cos() + b * turn.sin()) * shift;
         // Rays that diverge from the camera, or run beside each other: both pass the hit so far off.
-        let [diverging, beside] = [
-            Ray {
-                origin: ray.origin,
-                direction: ray.direction + aside / t,
-            },
-            Ray {
-                origin: ray.origin + aside,
-                direction: ray.direction,
-            },
-        ];
-        [diverging, beside]
-            .iter()
-            .all(|ray| match tracer.first(*ray) {
-                First::Hit(hit) => {
-                    let same = hit.normal.is_some_and(|n| n.dot(normal) > 0.5);
-                    hit.object == object && same
-                }
-                _ => false,
-            })
+        let diverging = (ray.origin, ray.direction + aside / t);
+        let beside = (ray.origin + aside, ray.direction);
+        [diverging, beside].into_iter().all(|(origin, direction)| {
+            let First::Hit(hit) = tracer.first(Ray { origin, direction }) else {
+                return false;
+            };
+            hit.object == object && hit.normal.is_some_and(|n| n.dot(normal) > 0.5)
+        })
     })
 }
 
@@ -311,7 +290,7 @@ fn met(seed: u64, share: f64) -> Tally {
         if !blur.is_small() {
             continue;
         }
-        let plans = ["f64", "f32"].map(|p| Plan::new(&invented.scene(p), false).unwrap());
+        let plans = ["f64", "f32"].map(|precision| plan(&invented.scene(precision)));
         let tracer = Tracer::new(&scene).unwrap();
         for _ in 0..48 {
             let [x, y] = std::array::from_fn(|_| rng.random_range(0..SIZE));
@@ -341,11 +320,8 @@ fn met(seed: u64, share: f64) -> Tally {
             let off = single.point - double.point;
             let across = off - double.direction * off.dot(double.direction);
             let surface = beside_surface(&tracer, single.point + from, single.normal, 8.0 * length);
-            let error = across.length().max(surface);
-            let ratio = error / length;
-            if single.object != double.object || ratio > share {
-                tally.off += 1;
-            }
+            let ratio = across.length().max(surface) / length;
+            tally.off += usize::from(single.object != double.object || ratio > share);
         }
     }
     tally
@@ -386,16 +362,11 @@ fn shadowed(rng: &mut Pcg64Mcg, sun: bool) -> Invented {
         "camera = {{ from = [0, {height:e}, 0], to = {:?}, fov = 60 }}\n",
         middle.to_array()
     );
-    let floor = "[[object]]\nshape = { plane = {} }\nmaterial = \"m\"\n\
-                 transform = [{ rotate_x = -90 }]\n";
-    let ball = format!(
-        "[[object]]\nshape = {{ sphere = {{ radius = {radius:e} }} }}\nmaterial = \"m\"\n\
-         transform = [{{ translate = {:?} }}]\n",
-        centre.to_array()
-    );
+    let floor = placed("plane = {}", "{ rotate_x = -90 }");
+    let ball = ball(centre.to_array(), radius);
     Invented {
         camera,
-        objects: vec![floor.into(), ball, format!("[[light]]\n{light}")],
+        objects: vec![floor, ball, format!("[[light]]\n{light}")],
     }
 }
 
@@ -412,8 +383,7 @@ fn with_a_middle(invented: &Invented, precision: &str) -> Scene {
 /// Samples of the middle pixel that both precisions follow to the floor, and those among them that only
 /// one sees lit.
 fn lit_otherwise(invented: &Invented) -> [usize; 2] {
-    let plans = ["f64", "f32"]
-        .map(|precision| Plan::new(&with_a_middle(invented, precision), false).unwrap());
+    let plans = ["f64", "f32"].map(|precision| plan(&with_a_middle(invented, precision)));
     let blocked = |sample: u32| {
         let [x, y] = [SIZE / 2; 2];
         let request = Request { x, y, sample };

@@ -1,17 +1,13 @@
 //! What the plan leaves out of the loop cannot show.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "the tests' own scenes are right, and what they hold is known"
-)]
-
 use etalon::inside::integrate::model::Model;
 use etalon::inside::integrate::needs::Needs;
 use etalon::inside::integrate::parts::Parts;
 use etalon::inside::math::lanes::Scalar;
 use etalon::inside::plan::{Tables, explain::explain};
-use etalon::inside::render::session::{Request, Unwatched, render};
 use etalon::{Plan, Scene};
+
+use crate::support::{pixel_bits, rendered};
 
 const SHAPES: [&str; 9] = [
     "\"sphere\"",
@@ -58,15 +54,8 @@ const PINHOLE: &str = "camera = { from = [0.2, 0.3, 4], to = [0, 0, 0], fov = 40
 const LENS: &str = "camera = { from = [0.2, 0.3, 4], to = [0, 0, 0], fov = 40, \
                     lens = { radius = 0.1, focus = 3 } }\n";
 
-fn bits(scene: &Scene, plan: &Plan) -> Vec<[u64; 6]> {
-    let request = Request::whole(scene.image.size, scene.image.spp);
-    let estimates = render(plan, &request, &mut Unwatched).xyz();
-    let each = estimates.iter().map(|e| {
-        let [x, y, z] = e.mean.map(f64::to_bits);
-        let [u, v, w] = e.standard_error.map(f64::to_bits);
-        [x, y, z, u, v, w]
-    });
-    each.collect()
+fn bits(scene: &Scene, plan: &Plan) -> Vec<[[u64; 3]; 2]> {
+    pixel_bits(&rendered(scene, plan))
 }
 
 fn left_out(plan: &Plan) -> usize {

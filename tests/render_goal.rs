@@ -1,35 +1,21 @@
 //! Renders that stop at a wanted error: unbiased, and near what was asked for; and error bars of
 //! blocks that hold as often as they say.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test that cannot go on has failed, and the panic says where"
-)]
-
-use std::path::PathBuf;
-
 use etalon::inside::render::goal::{choose, reached};
 use etalon::inside::render::{Instructions, Unwatched};
 use etalon::inside::study::coverage::{Coverage, Survey, cover};
 use etalon::inside::study::subject::{Ready, Subject};
 use etalon::{Estimate, Goal, Overrides, Rendered, Target};
-use tempfile::TempDir;
 
 use crate::statistics_support::moments;
+use crate::support::Folder;
 
 /// A small lamp over a floor, in a black room: most paths bring nothing.
 const SCENE: &str = r#"
-[camera]
-from = [0, 2, 4]
-to = [0, 0, 0]
-fov = 50
-[image]
-size = [8, 8]
-spp = 8
-max_depth = 3
-[materials]
-floor = { diffuse = 0.7 }
-lamp = { emit = 20 }
+camera = { from = [0, 2, 4], to = [0, 0, 0], fov = 50 }
+image = { size = [8, 8], spp = 8, max_depth = 3 }
+materials.floor = { diffuse = 0.7 }
+materials.lamp = { emit = 20 }
 [[object]]
 shape = { rectangle = { size = [3, 3] } }
 material = "floor"
@@ -40,35 +26,21 @@ material = "lamp"
 transform = [{ translate = [0.4, 0.6, 0] }]
 "#;
 
-struct Studio {
-    _directory: TempDir,
-    subject: Subject,
-}
-
-impl Studio {
-    fn new() -> Self {
-        let directory = tempfile::tempdir().unwrap();
-        let path: PathBuf = directory.path().join("lamp.toml");
-        std::fs::write(&path, SCENE).unwrap();
-        Self {
-            _directory: directory,
-            subject: Subject {
-                path,
-                overrides: Overrides::default(),
-                instructions: Instructions::best(),
-            },
-        }
-    }
-
-    fn ready(&self, settings: &[(&str, &str)]) -> Ready {
-        let set = settings.iter();
-        let set = set.map(|(key, value)| (format!("image.{key}"), (*value).to_owned()));
-        let overrides = Overrides {
-            set: set.collect(),
-            ..Overrides::default()
-        };
-        self.subject.ready(&overrides, "test".to_owned()).unwrap()
-    }
+/// The scene with settings of its image.
+fn ready(settings: &[(&str, &str)]) -> Ready {
+    let folder = Folder::new(SCENE);
+    let subject = Subject {
+        path: folder.path("scene.toml"),
+        overrides: Overrides::default(),
+        instructions: Instructions::best(),
+    };
+    let set = settings.iter();
+    let set = set.map(|(key, value)| (format!("image.{key}"), (*value).to_owned()));
+    let overrides = Overrides {
+        set: set.collect(),
+        ..Overrides::default()
+    };
+    subject.ready(&overrides, "test".to_owned()).unwrap()
 }
 
 fn render(ready: &mut Ready, seed: u64, samples: u32) -> Rendered {
@@ -82,16 +54,13 @@ const LEVEL: f64 = 1e-4;
 
 /// The mean of many renders with a fixed number of samples, and its error.
 fn truth(ready: &mut Ready) -> Estimate {
-    let means: Vec<f64> = (0..200)
-        .map(|i| render(ready, 1_000_000 + i, 512).mean_luminance().value)
-        .collect();
-    Estimate::mean(&means)
+    let render = |i: u64| render(ready, 1_000_000 + i, 512).mean_luminance().value;
+    Estimate::mean(&(0..200).map(render).collect::<Vec<f64>>())
 }
 
 #[test]
 fn a_goal_is_reached_without_bending_the_picture() {
-    let studio = Studio::new();
-    let mut ready = studio.ready(&[("sampler", "independent")]);
+    let mut ready = ready(&[("sampler", "independent")]);
     let truth = truth(&mut ready);
     let goal = Goal {
         target: Target::Image,
@@ -114,17 +83,14 @@ fn a_goal_is_reached_without_bending_the_picture() {
     assert!(p > LEVEL, "biased: {stopped:?}, {truth:?}, p = {p}");
     let (mean, variance) = moments(&means);
     let error = variance.sqrt() / mean;
-    assert!(
-        (error / WANTED - 1.0).abs() < 0.2,
-        "{error} reached, {WANTED} asked for, {} spp on average",
-        samples / RENDERS
-    );
+    let spp = samples / RENDERS;
+    let words = format!("{error} reached, {WANTED} asked for, {spp} spp on average");
+    assert!((error / WANTED - 1.0).abs() < 0.2, "{words}");
 }
 
 #[test]
 fn a_render_that_stops_on_its_own_samples_would_be_noticed() {
-    let studio = Studio::new();
-    let mut ready = studio.ready(&[("sampler", "independent")]);
+    let mut ready = ready(&[("sampler", "independent")]);
     let truth = truth(&mut ready);
     // Eight replicates of four pixels' worth: small pilots that end as soon as they look good.
     let mut means = Vec::new();
@@ -163,19 +129,14 @@ fn true_worst_block(ready: &mut Ready, samples: u32) -> f64 {
 
 #[test]
 fn the_worst_block_reaches_its_goal_too() {
-    let studio = Studio::new();
     let goal = Goal {
         target: Target::Block,
         error: WANTED,
     };
     for sampler in ["independent", "stratified", "sobol"] {
         let ready = |samples: u32| {
-            let samples = samples.to_string();
-            studio.ready(&[
-                ("sampler", sampler),
-                ("size", "[24, 16]"),
-                ("spp", &samples),
-            ])
+            let size = ("size", "[24, 16]");
+            ready(&[("sampler", sampler), size, ("spp", &samples.to_string())])
         };
         const RUNS: u64 = 50;
         let mut square = 0.0;
@@ -189,17 +150,13 @@ fn the_worst_block_reaches_its_goal_too() {
         }
         // Root of the mean square over runs, as for the picture's mean above.
         let ratio = (square / RUNS as f64).sqrt() / WANTED;
-        assert!(
-            (0.8..1.2).contains(&ratio),
-            "{sampler}: {ratio:.3} of what was asked for"
-        );
+        assert!((0.8..1.2).contains(&ratio), "{sampler}: {ratio:.3}");
     }
 }
 
 #[test]
 fn a_goal_that_needs_more_than_can_be_had_says_so() {
-    let studio = Studio::new();
-    let mut ready = studio.ready(&[]);
+    let mut ready = ready(&[]);
     let goal = Goal {
         target: Target::Image,
         error: 1e-6,
@@ -215,31 +172,27 @@ fn a_goal_that_needs_more_than_can_be_had_says_so() {
 
 #[test]
 fn intervals_of_blocks_hold_as_often_as_they_say() {
-    let studio = Studio::new();
     let size = ("size", "[64, 48]");
-    let mut survey = studio.ready(&[
+    let survey = [
         ("sampler", "independent"),
         ("spp", "64"),
         ("replicates", "64"),
         size,
-    ]);
+    ];
+    let mut survey = ready(&survey);
     let blocks = Survey::new(&mut survey, 16).blocks();
     for sampler in ["independent", "stratified", "sobol"] {
-        let mut ready = studio.ready(&[("sampler", sampler), ("spp", "64"), size]);
+        let mut ready = ready(&[("sampler", sampler), ("spp", "64"), size]);
         let test = |ready: &mut Ready, blocks: &[_]| {
-            (0..24)
-                .map(|render| cover(ready, render, blocks))
-                .fold(Coverage::default(), Coverage::plus)
+            let renders = (0..24).map(|render| cover(ready, render, blocks));
+            renders.fold(Coverage::default(), Coverage::plus)
         };
         let honest = test(&mut ready, &blocks).enough;
         // A binomial standard error of 1.3 % with 300 blocks, three of those, and the percentage
         // point that the threshold leaves.
         assert!(honest.all >= 300, "{honest:?}");
-        assert!(
-            (0.90..=1.0).contains(&honest.share()),
-            "{sampler}: {}",
-            honest.share()
-        );
+        let share = honest.share();
+        assert!((0.90..=1.0).contains(&share), "{sampler}: {share}");
         // A truth that is off by three standard errors is held in few.
         let mut wrong = blocks.clone();
         for block in wrong.iter_mut().flatten() {

@@ -4,8 +4,7 @@
 //! False alarms: this module's random tests share the family level 2e-4 (Šidák over an upper bound
 //! of their number), seeds are fixed and nothing is tried twice.
 
-#![allow(clippy::unwrap_used, reason = "the truths file is part of the tests")]
-
+use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 
 use etalon::Instructions;
@@ -18,10 +17,11 @@ use etalon::inside::stats::family::sidak;
 use etalon_doors::samplers::{self, Numbers, Shuffle, power_weights, sample_numbers, shuffled};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use serde_json::Value;
 
 use crate::lanes_support::{PRECISIONS, Precision, everywhere, on_each};
 use crate::statistics_support::{chi_square, moments, normal_p, t_test, variance_p};
-use crate::truth_file::{list, number, truth};
+use crate::truth_file::{number, truth};
 
 /// Level of all random tests of this module together.
 const FAMILY: f64 = 2e-4;
@@ -92,9 +92,9 @@ fn every_number_is_uniform_at_every_index() {
                     let drawn = drawn(precision, &sequence, what, &requests);
                     for column in 0..what.width() {
                         let mut counts = [0; 64];
-                        for numbers in &drawn {
-                            assert!((0.0..1.0).contains(&numbers[column]));
-                            counts[(numbers[column] * 64.0) as usize] += 1;
+                        for x in drawn.iter().map(|numbers| numbers[column]) {
+                            assert!((0.0..1.0).contains(&x));
+                            counts[(x * 64.0) as usize] += 1;
                         }
                         let p = chi_square(&counts, &[200.0; 64]);
                         assert!(p > level(), "{kind:?} {what:?} {index} {column}: {p:e}");
@@ -114,14 +114,11 @@ fn a_sample_does_not_depend_on_its_company() {
                 let requests: Vec<[u32; 4]> =
                     (0..999).map(|i| [i % 7, i / 100, i % 2, i % 64]).collect();
                 let together = drawn(precision, &sequence, what, &requests);
-                let mut reversed = requests.clone();
-                reversed.reverse();
-                let mut backwards = drawn(precision, &sequence, what, &reversed);
-                backwards.reverse();
-                assert_eq!(together, backwards);
-                for (name, other) in
-                    on_each(|set| sample_numbers(set, precision, &sequence, what, &requests))
-                {
+                let reversed: Vec<[u32; 4]> = requests.iter().copied().rev().collect();
+                let backwards = drawn(precision, &sequence, what, &reversed);
+                assert!(together.iter().eq(backwards.iter().rev()));
+                let ask = |set| sample_numbers(set, precision, &sequence, what, &requests);
+                for (name, other) in on_each(ask) {
                     assert_eq!(together, other, "{name}");
                 }
                 // Another seed, another pixel: other numbers.
@@ -141,6 +138,11 @@ fn pixel_means(drawn: &[[f64; 5]], n: u32, column: usize, f: impl Fn(f64) -> f64
         .collect()
 }
 
+/// 1 for numbers below an edge, and 0 for others.
+fn below(edge: f64) -> impl Fn(f64) -> f64 {
+    move |x| f64::from(u8::from(x < edge))
+}
+
 /// Truth for the kind of point set: independent, jittered or stratified in one dimension.
 fn promised(kind: SamplerKind, names: [&str; 3]) -> &str {
     match kind {
@@ -153,20 +155,18 @@ fn promised(kind: SamplerKind, names: [&str; 3]) -> &str {
 /// Runs both truths over all kinds and sizes; `spoil` may change numbers and must be noticed.
 fn variances(precision: Precision, spoil: impl Fn(u32, f64) -> f64) -> Vec<(String, f64)> {
     let edge = truth("edge_variance");
-    let edge_at = number(&edge["setup"]["p"]);
+    let edge_at = edge.of("p");
     let ramp = truth("ramp_variance");
     let mut p_values = Vec::new();
     for kind in KINDS {
-        for (edge_row, ramp_row) in list(&edge["exact"]["rows"])
-            .iter()
-            .zip(list(&ramp["exact"]["rows"]))
-        {
+        for (edge_row, ramp_row) in edge.rows("rows").iter().zip(ramp.rows("rows")) {
             let n = number(&edge_row["N"]) as u32;
             assert_eq!(n, number(&ramp_row["N"]) as u32);
-            let edge_variance =
-                number(&edge_row[promised(kind, ["var_independent", "var_jittered", "var_lhs"])]);
+            let of = |row: &Value, names| number(&row[promised(kind, names)]);
+            let names = ["var_independent", "var_jittered", "var_lhs"];
+            let edge_variance = of(edge_row, names);
             let names = ["var_independent", "var_jittered", "var_stratified_1d"];
-            let ramp_variance = number(&ramp_row[promised(kind, names)]);
+            let ramp_variance = of(ramp_row, names);
             for what in [Numbers::Camera, Numbers::Pair(Slot::Light, 2)] {
                 let mut drawn = pixels_of(precision, sequence(kind, 31, n), what, 2_000, n);
                 for (i, numbers) in drawn.iter_mut().enumerate() {
@@ -175,8 +175,7 @@ fn variances(precision: Precision, spoil: impl Fn(u32, f64) -> f64) -> Vec<(Stri
                     }
                 }
                 for column in 0..2 {
-                    let edge_means =
-                        pixel_means(&drawn, n, column, |x| f64::from(u8::from(x < edge_at)));
+                    let edge_means = pixel_means(&drawn, n, column, below(edge_at));
                     let ramp_means = pixel_means(&drawn, n, column, |x| x);
                     for (name, means, mean, variance) in [
                         ("edge", edge_means, edge_at, edge_variance),
@@ -207,29 +206,31 @@ fn point_sets_have_the_variance_they_promise() {
 #[test]
 fn a_shifted_or_clumped_point_set_is_noticed() {
     // A fiftieth of the square missing at one side; every eighth sample taken twice.
-    let shifted = variances(Precision::Single, |_, x| 0.98 * x);
-    let caught = shifted.iter().filter(|(_, p)| *p < level()).count();
-    assert!(caught * 3 > shifted.len(), "{caught} of {}", shifted.len());
     let last = std::cell::Cell::new(0.5);
-    let clumped = variances(Precision::Single, |i, x| {
-        if i % 8 == 7 {
-            last.get()
-        } else {
-            last.replace(x);
+    let clump = |i, x| match i % 8 {
+        7 => last.get(),
+        _ => {
+            last.set(x);
             x
         }
-    });
-    let caught = clumped.iter().filter(|(_, p)| *p < level()).count();
-    assert!(caught * 3 > clumped.len(), "{caught} of {}", clumped.len());
+    };
+    for (what, p_values) in [
+        ("shifted", variances(Precision::Single, |_, x| 0.98 * x)),
+        ("clumped", variances(Precision::Single, clump)),
+    ] {
+        let caught = p_values.iter().filter(|(_, p)| *p < level()).count();
+        let all = p_values.len();
+        assert!(caught * 3 > all, "{what}: {caught} of {all}");
+    }
 }
 
 /// Whether 2ᵐ points have one in each elementary interval of area 2⁻ᵐ.
-fn is_net(points: &[[f64; 2]]) -> bool {
+fn is_net(points: &[[f64; 5]]) -> bool {
     let m = points.len().trailing_zeros();
     (0..=m).all(|a| {
         let (across, down) = (1u32 << a, 1u32 << (m - a));
         let mut seen = vec![false; points.len()];
-        for [u, v] in points {
+        for [u, v, ..] in points {
             let (i, j) = ((u * f64::from(across)) as u32, (v * f64::from(down)) as u32);
             seen[(j * across + i) as usize] = true;
         }
@@ -248,29 +249,20 @@ fn scrambled_sobol_points_are_nets_in_every_aligned_block() {
         for pixel in pixels_of(Precision::Double, sequence, what, 24, 1024).chunks(1024) {
             for m in 0..=10 {
                 for block in pixel.chunks(1 << m) {
-                    let points: Vec<[f64; 2]> = block.iter().map(|x| [x[0], x[1]]).collect();
-                    assert!(is_net(&points), "2^{m}, {what:?}");
+                    assert!(is_net(block), "2^{m}, {what:?}");
                     // One coordinate of each dimension in every interval of length 2⁻ᵐ.
                     for column in 0..what.width() {
-                        let mut cells: Vec<usize> = block
-                            .iter()
-                            .map(|x| (x[column] * block.len() as f64) as usize)
-                            .collect();
-                        cells.sort_unstable();
-                        assert!(
-                            cells.into_iter().eq(0..block.len()),
-                            "2^{m}, {what:?} {column}"
-                        );
+                        let cell = |x: &[f64; 5]| (x[column] * block.len() as f64) as usize;
+                        let cells: BTreeSet<usize> = block.iter().map(cell).collect();
+                        let all = cells.into_iter().eq(0..block.len());
+                        assert!(all, "2^{m}, {what:?} {column}");
                     }
                 }
             }
         }
     }
     // Planted: one point moved by a quarter.
-    let mut points: Vec<[f64; 2]> = pixels_of(Precision::Double, sequence, Numbers::Camera, 1, 64)
-        .iter()
-        .map(|x| [x[0], x[1]])
-        .collect();
+    let mut points = pixels_of(Precision::Double, sequence, Numbers::Camera, 1, 64);
     points[10][0] = (points[10][0] + 0.25) % 1.0;
     assert!(!is_net(&points));
 }
@@ -278,18 +270,13 @@ fn scrambled_sobol_points_are_nets_in_every_aligned_block() {
 /// Squared L₂ star discrepancy (T. Warnock 1972).
 fn discrepancy(points: &[[f64; 5]]) -> f64 {
     let n = points.len() as f64;
-    let singles: f64 = points
-        .iter()
-        .map(|p| p.iter().map(|x| (1.0 - x * x) / 2.0).product::<f64>())
-        .sum();
+    let single = |p: &[f64; 5]| p.iter().map(|x| (1.0 - x * x) / 2.0).product::<f64>();
+    let singles: f64 = points.iter().map(single).sum();
     let mut pairs = 0.0;
     for p in points {
         for q in points {
-            pairs += p
-                .iter()
-                .zip(q)
-                .map(|(a, b)| 1.0 - a.max(*b))
-                .product::<f64>();
+            let sides = p.iter().zip(q).map(|(a, b)| 1.0 - a.max(*b));
+            pairs += sides.product::<f64>();
         }
     }
     libm::pow(1.0 / 3.0, 5.0) - 2.0 / n * singles + pairs / (n * n)
@@ -330,16 +317,13 @@ fn different_slots_are_uncorrelated() {
             for j in 0..i {
                 for column in 0..whats[j].width() {
                     // The covariance over the points of each pixel.
-                    let products: Vec<f64> = drawn[i]
-                        .chunks(n as usize)
-                        .zip(drawn[j].chunks(n as usize))
-                        .map(|(a, b)| {
-                            let pairs = a.iter().zip(b);
-                            let sum: f64 =
-                                pairs.map(|(a, b)| (a[0] - 0.5) * (b[column] - 0.5)).sum();
-                            sum / f64::from(n)
-                        })
-                        .collect();
+                    let pixels = |i: usize| drawn[i].chunks(n as usize);
+                    let covariance = |(a, b): (&[[f64; 5]], &[[f64; 5]])| {
+                        let pairs = a.iter().zip(b);
+                        let products = pairs.map(|(a, b)| (a[0] - 0.5) * (b[column] - 0.5));
+                        products.sum::<f64>() / f64::from(n)
+                    };
+                    let products: Vec<f64> = pixels(i).zip(pixels(j)).map(covariance).collect();
                     let what = format!("{kind:?} {:?} {:?} {column}", whats[i], whats[j]);
                     assert!(t_test(&products, 0.0) > level(), "{what}");
                     // As of points paired at random, 1/(144 n); a nested shuffle of the index
@@ -389,21 +373,15 @@ fn scrambling_is_nested_and_its_flips_are_balanced() {
     }
     for k in 0..32 {
         let z = (flips[k] as f64 - rounds as f64 / 2.0) / (rounds as f64 / 4.0).sqrt();
-        assert!(
-            normal_p(z) > level(),
-            "flips of bit {k}: {} of {rounds}",
-            flips[k]
-        );
+        assert!(normal_p(z) > level(), "bit {k}: {} of {rounds}", flips[k]);
         let [same, other] = differ[k];
         let total = (same + other) as f64;
         // An exact scramble has 1/2; the hash is a cheap one.
         if k > 0 {
             let share = other as f64 / total;
             println!("bit {k}: depends on lower bits in {share:.3}");
-            assert!(
-                (share - 0.5).abs() < 0.06 + 5.0 * (0.25 / total).sqrt(),
-                "bit {k}: {share}"
-            );
+            let allowed = 0.06 + 5.0 * (0.25 / total).sqrt();
+            assert!((share - 0.5).abs() < allowed, "bit {k}: {share}");
         }
     }
 }
@@ -423,12 +401,11 @@ fn permutations_are_bijections_and_even() {
     // Where the first two elements go.
     for count in [2u32, 3, 4, 5, 7, 8, 9, 16, 25, 49] {
         let seeds = 40_000;
-        let words: Vec<[u32; 2]> = (0..seeds)
-            .flat_map(|_| {
-                let seed = rng.random();
-                [[0, seed], [1, seed]]
-            })
-            .collect();
+        let mut pair = |_| {
+            let seed = rng.random();
+            [[0, seed], [1, seed]]
+        };
+        let words: Vec<[u32; 2]> = (0..seeds).flat_map(&mut pair).collect();
         let image = image(Shuffle::Permutation(count), &words);
         let mut first = vec![0; count as usize];
         let mut both = vec![0; (count * count) as usize];
@@ -439,30 +416,12 @@ fn permutations_are_bijections_and_even() {
         let each = f64::from(seeds) / f64::from(count);
         let p = chi_square(&first, &vec![each; count as usize]);
         assert!(p > level(), "{count}: first element {first:?}, {p:e}");
-        let expected: Vec<f64> = (0..count * count)
-            .map(|k| {
-                let equal = k / count == k % count;
-                if equal {
-                    0.0
-                } else {
-                    each / f64::from(count - 1)
-                }
-            })
-            .collect();
-        let worst = both
-            .iter()
-            .zip(&expected)
-            .map(|(&c, &e)| {
-                if e > 0.0 {
-                    (c as f64 / e - 1.0).abs()
-                } else {
-                    c as f64
-                }
-            })
-            .fold(0.0, f64::max);
+        // Equal images cannot be.
+        let apart = |k: u32| f64::from(u8::from(k / count != k % count));
+        let expected = (0..count * count).map(|k| apart(k) * each / f64::from(count - 1));
+        let expected: Vec<f64> = expected.collect();
         let p = chi_square(&both, &expected);
         assert!(p > level(), "{count}: pairs {p:e}");
-        println!("{count}: pairs off by up to {:.1} %", 100.0 * worst);
     }
 }
 
@@ -472,18 +431,13 @@ fn many_strata_stay_in_the_square() {
     for points in [1 << 22, 3000 * 2999, (1 << 24) - 1] {
         let sequence = sequence(SamplerKind::Stratified, 2, points);
         for what in [Numbers::Pair(Slot::Light, 0), Numbers::Camera] {
-            let requests: Vec<[u32; 4]> = (0..20_000)
-                .map(|i| [1, 2, 0, i * (points / 20_000)])
-                .collect();
+            let requests = (0..20_000).map(|i| [1, 2, 0, i * (points / 20_000)]);
+            let requests: Vec<[u32; 4]> = requests.collect();
             let [single, double] =
-                PRECISIONS.map(|precision| drawn(precision, &sequence, what, &requests));
+                PRECISIONS.map(|precision| drawn(precision, &sequence, what, &requests).concat());
             for (a, b) in single.iter().zip(&double) {
-                for (a, b) in a.iter().zip(b) {
-                    assert!(
-                        (0.0..1.0).contains(a) && (a - b).abs() < 1e-6,
-                        "{points}: {a} {b}"
-                    );
-                }
+                let within = (0.0..1.0).contains(a) && (a - b).abs() < 1e-6;
+                assert!(within, "{points}: {a} {b}");
             }
         }
     }
@@ -504,22 +458,14 @@ fn replicates_share_out_all_samples() {
             assert_eq!(seen[replicate as usize], index, "{replicates:?} at {i}");
             seen[replicate as usize] += 1;
             let samples = i + 1;
-            let near_a_step = [1, 2, 256, 512, 4096, 8192]
-                .iter()
-                .any(|s| samples.abs_diff(*s) < 20);
+            let mut steps = [1u32, 2, 256, 512, 4096, 8192].iter();
+            let near_a_step = steps.any(|s| samples.abs_diff(*s) < 20);
             if near_a_step || samples % 997 == 0 {
                 let reached = seen.iter().filter(|&&n| n > 0).count();
-                assert_eq!(
-                    replicates.count(samples) as usize,
-                    reached,
-                    "{replicates:?} {samples}"
-                );
-                for (r, &own) in seen.iter().enumerate() {
-                    assert_eq!(
-                        replicates.samples_of(r as u32, samples),
-                        own,
-                        "{replicates:?} {r}"
-                    );
+                let what = format!("{replicates:?} {samples}");
+                assert_eq!(replicates.count(samples) as usize, reached, "{what}");
+                for (r, &own) in (0..).zip(&seen) {
+                    assert_eq!(replicates.samples_of(r, samples), own, "{what} {r}");
                 }
                 assert_eq!(replicates.samples_of(seen.len() as u32 + 7, samples), 0);
             }
@@ -531,33 +477,27 @@ fn replicates_share_out_all_samples() {
 fn standard_errors_are_honest() {
     // 16 samples in each of 8 jittered replicates across an edge.
     let edge = truth("edge_variance");
-    let p = number(&edge["setup"]["p"]);
-    let row = &list(&edge["exact"]["rows"])[1];
+    let p = edge.of("p");
+    let row = &edge.rows("rows")[1];
     let (replicates, spp, pixels) = (Replicates::Fixed(8), 128, 3_000);
     let sequence = Sequence::new(SamplerKind::Stratified, 3, spp, replicates);
-    let requests: Vec<[u32; 4]> = (0..pixels)
-        .flat_map(|pixel| {
-            (0..spp).map(move |i| {
-                let (replicate, index) = replicates.place(i);
-                [pixel, 0, replicate, index]
-            })
-        })
-        .collect();
+    let request = |k: u32| {
+        let (replicate, index) = replicates.place(k % spp);
+        [k / spp, 0, replicate, index]
+    };
+    let requests: Vec<[u32; 4]> = (0..pixels * spp).map(request).collect();
     let drawn = drawn(Precision::Single, &sequence, Numbers::Camera, &requests);
     let mut film = Pixels::new(pixels as usize, replicates, spp);
     for (k, numbers) in drawn.iter().enumerate() {
         let (pixel, i) = (k as u32 / spp, k as u32 % spp);
-        let value = f64::from(u8::from(numbers[0] < p));
+        let value = below(p)(numbers[0]);
         film.add(pixel as usize, i..i + 1, &[[value, 2.0 * value, 1.0]]);
     }
     let counts = replicates.counts(spp);
-    let estimates: Vec<_> = (0..pixels as usize)
-        .map(|i| film.estimate(i, &counts, |xyz| xyz))
-        .collect();
-    let squares: Vec<f64> = estimates
-        .iter()
-        .map(|e| e.standard_error[0].powi(2))
-        .collect();
+    let estimates = (0..pixels as usize).map(|i| film.estimate(i, &counts, |xyz| xyz));
+    let estimates: Vec<_> = estimates.collect();
+    let squares = estimates.iter().map(|e| e.standard_error[0].powi(2));
+    let squares: Vec<f64> = squares.collect();
     let variance = number(&row["var_jittered"]) / 8.0;
     assert!(t_test(&squares, variance) > level());
     let means: Vec<f64> = estimates.iter().map(|e| e.mean[0]).collect();
@@ -578,53 +518,38 @@ fn standard_errors_are_honest() {
 #[test]
 fn stopping_on_the_pilot_is_biased_and_fixed_counts_are_not() {
     let truth = truth("two_stage_bias");
-    let p = number(&truth["setup"]["p"]);
-    let n = number(&truth["setup"]["N"]);
-    let pixels = 4_000;
-    let drawn = pixels_of(
-        Precision::Single,
-        sequence(SamplerKind::Independent, 6, n as u32),
-        Numbers::Camera,
-        pixels,
-        n as u32,
-    );
-    let fixed = pixel_means(&drawn, n as u32, 0, |x| f64::from(u8::from(x < p)));
+    let p = truth.of("p");
+    let n = truth.of("N");
+    let count = n as u32;
+    let sequence = sequence(SamplerKind::Independent, 6, count);
+    let drawn = pixels_of(Precision::Single, sequence, Numbers::Camera, 4_000, count);
+    let fixed = pixel_means(&drawn, count, 0, below(p));
     assert!(t_test(&fixed, p) > level());
-    for row in list(&truth["exact"]["rows"]) {
+    for row in truth.rows("rows") {
         let k = number(&row["k"]);
-        // Σ over pilots with j hits: all equal stop, the others go on to N.
+        // The mean of a pixel whose pilot has so many hits: all equal stop, the others go on to N.
+        let ends = |pilot: f64, all: f64| match pilot {
+            _ if pilot == 0.0 || pilot == k => pilot / k,
+            _ => all / n,
+        };
+        // Σ over pilots with j hits.
         let mut expected = 0.0;
         let mut binomial = 1.0;
-        for j in 0..=k as u32 {
-            let j = f64::from(j);
+        for j in (0..=k as u32).map(f64::from) {
             let chance = binomial * libm::pow(p, j) * libm::pow(1.0 - p, k - j);
-            let mean = if j == 0.0 || j == k {
-                j / k
-            } else {
-                (j + (n - k) * p) / n
-            };
-            expected += chance * mean;
+            expected += chance * ends(j, j + (n - k) * p);
             binomial *= (k - j) / (j + 1.0);
         }
-        assert!(
-            (expected - number(&row["E_reuse"])).abs() < 1e-12,
-            "{expected}"
-        );
+        let off = (expected - number(&row["E_reuse"])).abs();
+        assert!(off < 1e-12, "{expected}");
         let relative = number(&row["relative_bias"]);
         assert!((expected / p - 1.0 - relative).abs() < 1e-10);
         // The same happens to real samples.
-        let means: Vec<f64> = drawn
-            .chunks(n as usize)
-            .map(|pixel| {
-                let hits = |m: f64| pixel[..m as usize].iter().filter(|x| x[0] < p).count() as f64;
-                let pilot = hits(k);
-                if pilot == 0.0 || pilot == k {
-                    pilot / k
-                } else {
-                    hits(n) / n
-                }
-            })
-            .collect();
+        let mean = |pixel: &[[f64; 5]]| {
+            let hits = |m: f64| pixel[..m as usize].iter().filter(|x| x[0] < p).count() as f64;
+            ends(hits(k), hits(n))
+        };
+        let means: Vec<f64> = drawn.chunks(n as usize).map(mean).collect();
         assert!(t_test(&means, expected) > level());
         assert!(t_test(&means, p) < level());
     }
@@ -645,13 +570,10 @@ fn weights_of_both_strategies_sum_to_one() {
     for precision in PRECISIONS {
         let [a, b] = everywhere(|set| power_weights(set, precision, [&ps, &qs]));
         for (i, (a, b)) in a.iter().zip(&b).enumerate() {
-            assert!(
-                (a + b - 1.0).abs() <= 4.0 * precision.roundoff(),
-                "{} {}",
-                ps[i],
-                qs[i]
-            );
-            let ratio = qs[i] / ps[i];
+            let (p, q) = (ps[i], qs[i]);
+            let off = (a + b - 1.0).abs();
+            assert!(off <= 4.0 * precision.roundoff(), "{p} {q}");
+            let ratio = q / p;
             let want = 1.0 / (1.0 + ratio * ratio);
             assert!((a - want).abs() <= 8.0 * precision.roundoff());
         }
@@ -709,20 +631,12 @@ fn warps_follow_their_densities() {
     }
     // The cosine density integrates to 1: Simpson's rule is exact for its primitive's degree.
     let n = 1_000;
-    let integral: f64 = (0..n)
-        .map(|i| {
-            let cosine = (f64::from(i) + 0.5) / f64::from(n);
-            cosine / PI * TAU / f64::from(n)
-        })
-        .sum();
+    let cosines = (0..n).map(|i| (f64::from(i) + 0.5) / f64::from(n));
+    let integral: f64 = cosines.map(|c| c / PI * TAU / f64::from(n)).sum();
     assert!((integral - 1.0).abs() < 1e-12);
     // Planted: a variate bent by 2.5 %.
-    for (k, p) in warps(Precision::Double, 52, |u| u + 0.1 * u * (1.0 - u))
-        .into_iter()
-        .enumerate()
-    {
-        assert!(p < level(), "warp {k}: {p:e}");
-    }
+    let bent = warps(Precision::Double, 52, |u| u + 0.1 * u * (1.0 - u));
+    assert!(bent.iter().all(|p| *p < level()), "{bent:?}");
 }
 
 /// Corners of the unit square, where formulas divide.
@@ -738,11 +652,7 @@ fn warps_are_finite_at_the_corners() {
     }
     for precision in PRECISIONS {
         for column in everywhere(|set| samplers::warps(set, precision, [&u, &v])) {
-            assert!(
-                column
-                    .iter()
-                    .all(|x| x.is_finite() && x.abs() <= 1.0 + 1e-6)
-            );
+            assert!(column.iter().all(|x| x.abs() <= 1.0 + 1e-6));
         }
     }
 }

@@ -1,8 +1,4 @@
 //! Scene files: what is read, and what is said when something is wrong.
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test that cannot go on has failed, and the panic says where"
-)]
 
 use std::path::Path;
 
@@ -17,6 +13,8 @@ use etalon::{Diagnostic, Origin, Overrides, Scene, SceneError};
 use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+
+use crate::support::{Folder, files};
 
 const GOOD: &str = r#"title = "a good file"
 environment = { name = "D65", scale = 2 }
@@ -73,7 +71,7 @@ materials = { white = { mirror = "Al" } }
 "#;
 
 fn parse(text: &str) -> Result<Scene, SceneError> {
-    scene::parse("test.toml", text, Path::new(""), &Overrides::default())
+    parse_with(text, None, &[])
 }
 
 fn parse_with(text: &str, panel: Option<&str>, set: &[(&str, &str)]) -> Result<Scene, SceneError> {
@@ -95,13 +93,8 @@ fn changed(passage: &str, replacement: &str) -> String {
 }
 
 fn diagnostic(result: Result<Scene, SceneError>, case: &str) -> Diagnostic {
-    match result {
-        Ok(_) => panic!("accepted: {case}"),
-        Err(error) => error
-            .diagnostic()
-            .unwrap_or_else(|| panic!("no place: {case}"))
-            .clone(),
-    }
+    let error = result.err().unwrap_or_else(|| panic!("accepted: {case}"));
+    error.diagnostic().expect(case).clone()
 }
 
 /// Parses a text in which `«…»` marks what the message must underline, and compares.
@@ -111,13 +104,14 @@ fn compare(marked: &str, message: &str, suggestion: Option<&str>) -> Result<(), 
     let text = format!("{before}{inside}{after}");
     let found = diagnostic(parse(&text), message);
     let line = before.matches('\n').count() + 1;
+    let indent = before.rsplit('\n').next().unwrap().chars().count();
     let wanted = Diagnostic {
         message: message.to_owned(),
         origin: Origin::File("test.toml".to_owned()),
         line,
-        column: before.rsplit('\n').next().unwrap().chars().count() + 1,
+        column: indent + 1,
         excerpt: text.lines().nth(line - 1).unwrap_or("").to_owned(),
-        indent: before.rsplit('\n').next().unwrap().chars().count(),
+        indent,
         width: inside.lines().next().unwrap_or("").chars().count().max(1),
         expected: found.expected.clone(),
         suggestion: suggestion.map(str::to_owned),
@@ -358,23 +352,19 @@ fn a_good_file_is_read_as_written() {
     assert_eq!(scene.image.max_depth, Some(32));
     assert_eq!(scene.image.seed, 0);
     assert_eq!(scene.environment, Some(Spectrum::d65(2.0)));
-    let names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
-    assert_eq!(names[0], "white");
-    assert_eq!(names.len(), 8);
+    assert_eq!(scene.materials[0].name, "white");
+    assert_eq!(scene.materials.len(), 8);
     let lamp = &scene.materials[6].value;
     assert_eq!(lamp.surface.kind, MaterialKind::Black);
     assert_eq!(lamp.emission.as_ref().unwrap().sides, Sides::Both);
-    assert_eq!(
-        scene.materials[2].value.surface,
-        conductor(named_metal("Ag").unwrap())
-    );
-    assert_eq!(
-        scene.materials[4].value.surface,
-        conductor(RefractiveIndex::Complex {
-            n: Spectrum::Constant(0.2),
-            k: Spectrum::Constant(3.0)
-        })
-    );
+    let measured = RefractiveIndex::Complex {
+        n: Spectrum::Constant(0.2),
+        k: Spectrum::Constant(3.0),
+    };
+    for (place, index) in [(2, named_metal("Ag").unwrap()), (4, measured)] {
+        let surface = &scene.materials[place].value.surface;
+        assert_eq!(*surface, conductor(index));
+    }
     assert_eq!(scene.objects[0].name, "box");
     assert_eq!(scene.objects[1].name, "sphere #1");
     assert_eq!(scene.objects[1].value.material, 5);
@@ -413,10 +403,8 @@ fn panels_are_laid_over_the_file() {
     let b = parse_with(GOOD, Some("b"), &[]).unwrap();
     assert_eq!(b.camera.projection, perspective(20.0));
     assert!(b.camera.lens.is_some());
-    assert_eq!(
-        b.materials[0].value.surface,
-        conductor(named_metal("Al").unwrap())
-    );
+    let aluminium = conductor(named_metal("Al").unwrap());
+    assert_eq!(b.materials[0].value.surface, aluminium);
     let wrong = diagnostic(parse_with(GOOD, Some("B1"), &[]), "panel");
     assert_eq!(wrong.message, r#"there is no panel "B1""#);
     assert_eq!(wrong.origin, Origin::Panel);
@@ -446,13 +434,11 @@ fn set_lays_values_over_the_file_and_the_panel() {
     assert_eq!(scene.image.size, [3, 4]);
     assert_eq!(scene.objects[0].value.material, 2);
     assert_eq!(scene.environment, Some(Spectrum::Constant(0.25)));
-    assert_eq!(
-        scene.materials[0].value.surface,
-        Surface {
-            kind: MaterialKind::Mirror,
-            values: vec![Value::Spectrum(Spectrum::Constant(0.5))],
-        }
-    );
+    let mirror = Surface {
+        kind: MaterialKind::Mirror,
+        values: vec![Value::Spectrum(Spectrum::Constant(0.5))],
+    };
+    assert_eq!(scene.materials[0].value.surface, mirror);
     let no_lens = parse_with(GOOD, None, &[("camera.lens.radius", "0")]).unwrap();
     assert_eq!(no_lens.camera.lens, None);
     let parallel = parse_with(GOOD, None, &[("camera.orthographic", "2")]).unwrap();
@@ -485,12 +471,12 @@ fn set_lays_values_over_the_file_and_the_panel() {
     }
 }
 
+/// Where the box of the good file is.
+const TRANSFORM: &str = "[{ rotate_y = 30 }, { scale = [1, 2, 1] }, { translate = [0, 1, 0] }]";
+
 /// The matrix of an object with this shape and transform.
 fn placed(shape: &str, transform: &str) -> Affine {
-    let text = changed("{ cube = { side = 2 } }", shape).replace(
-        "[{ rotate_y = 30 }, { scale = [1, 2, 1] }, { translate = [0, 1, 0] }]",
-        transform,
-    );
+    let text = changed("{ cube = { side = 2 } }", shape).replace(TRANSFORM, transform);
     parse(&text).unwrap().objects[0].value.to_world
 }
 
@@ -521,10 +507,10 @@ fn quarter_turns_are_exact() {
             assert_eq!(bits(&placed("\"cube\"", &about)), bits(&Affine { rows }));
         }
     }
-    let third = placed("\"cube\"", "[{ rotate_z = 210 }]");
-    assert_eq!(third.rows[1][0], -0.5);
-    let third = placed("\"cube\"", "[{ rotate_z = -60 }]");
-    assert_eq!(third.rows[0][0], 0.5);
+    for (angle, row, half) in [(210, 1, -0.5), (-60, 0, 0.5)] {
+        let third = placed("\"cube\"", &format!("[{{ rotate_z = {angle} }}]"));
+        assert_eq!(third.rows[row][0], half);
+    }
 }
 
 #[test]
@@ -560,24 +546,16 @@ fn singular_is_decided_exactly() {
     let near = "[[1, 1, 0, 0], [1, 1.0000000000000002, 0, 0], [0, 0, 4.930380657631324e-32, 0]]";
     placed("\"cube\"", &format!("[{{ matrix = {near} }}]"));
     // Entries whose products under- and overflow.
-    placed(
-        "\"cube\"",
-        "[{ matrix = [[5e-324, 0, 0, 0], [0, 5e-324, 0, 0], [0, 0, 1.7e308, 0]] }]",
-    );
+    let wide = "[[5e-324, 0, 0, 0], [0, 5e-324, 0, 0], [0, 0, 1.7e308, 0]]";
+    placed("\"cube\"", &format!("[{{ matrix = {wide} }}]"));
     // Singular: proportional rows; and a third row that is the sum of the others, with products
     // beyond 2^53, so that they are rounded in floating point.
     for matrix in [
         "[[0.1, 0.2, 0.3, 0], [0.2, 0.4, 0.6, 0], [1, 5, 7, 0]]",
         "[[94906267, 94906265, 3, 0], [94906269, 94906264, 7, 0], [189812536, 189812529, 10, 0]]",
     ] {
-        check(
-            &changed(
-                "[{ rotate_y = 30 }, { scale = [1, 2, 1] }, { translate = [0, 1, 0] }]",
-                &format!("«[{{ matrix = {matrix} }}]»"),
-            ),
-            "the object's matrix is singular",
-            None,
-        );
+        let text = changed(TRANSFORM, &format!("«[{{ matrix = {matrix} }}]»"));
+        check(&text, "the object's matrix is singular", None);
     }
 }
 
@@ -604,11 +582,8 @@ fn sizes_and_defaults_of_shapes() {
         let placed = placed(shape, "[]");
         assert_eq!(placed, Affine::scale(DVec3::from_array(size)), "{shape}");
     }
-    let text = changed(
-        "{ cube = { side = 2 } }",
-        "{ implicit = \"heart\", steps = 7 }",
-    );
-    let scene = parse(&text).unwrap();
+    let heart = "{ implicit = \"heart\", steps = 7 }";
+    let scene = parse(&changed("{ cube = { side = 2 } }", heart)).unwrap();
     let Shape::Implicit(heart) = &scene.objects[0].value.shape else {
         panic!("{:?}", scene.objects[0].value.shape);
     };
@@ -623,46 +598,36 @@ fn spectra_in_every_form() {
         let scene = parse(&text).unwrap();
         scene.lights[0].spectrum().unwrap().clone()
     };
-    assert_eq!(spectrum("\"E\""), Spectrum::Constant(1.0));
-    assert_eq!(
-        spectrum("{ constant = 0.5, scale = 4 }"),
-        Spectrum::Constant(2.0)
-    );
-    assert_eq!(spectrum("\"D65\""), Spectrum::d65(1.0));
-    assert_eq!(
-        spectrum("{ blackbody = 3000 }"),
-        Spectrum::Blackbody {
-            kelvin: 3000.0,
-            scale: 1.0
-        }
-    );
-    assert_eq!(
-        spectrum("{ rgb = [1, 2, 3], scale = 0.5 }"),
-        Spectrum::rgb_emission([0.5, 1.0, 1.5]).unwrap()
-    );
+    let lamp = Spectrum::Blackbody {
+        kelvin: 3000.0,
+        scale: 1.0,
+    };
+    let rgb = Spectrum::rgb_emission([0.5, 1.0, 1.5]).unwrap();
+    for (form, wanted) in [
+        ("\"E\"", Spectrum::Constant(1.0)),
+        ("{ constant = 0.5, scale = 4 }", Spectrum::Constant(2.0)),
+        ("\"D65\"", Spectrum::d65(1.0)),
+        ("{ blackbody = 3000 }", lamp),
+        ("{ rgb = [1, 2, 3], scale = 0.5 }", rgb),
+    ] {
+        assert_eq!(spectrum(form), wanted, "{form}");
+    }
     let Spectrum::Table(table) = spectrum("\"pale\"") else {
         panic!("not a table");
     };
     assert_eq!(table.nm, [400.0, 500.0, 700.0]);
     assert_eq!(table.values, [0.1, 0.2, 0.4]);
-    let day = parse(&changed(
-        "environment = { name = \"D65\", scale = 2 }",
-        "environment.radiance = 3",
-    ));
-    assert_eq!(day.unwrap().environment, Some(Spectrum::Constant(3.0)));
+    let day = "environment = { name = \"D65\", scale = 2 }";
+    let day = parse(&changed(day, "environment.radiance = 3")).unwrap();
+    assert_eq!(day.environment, Some(Spectrum::Constant(3.0)));
 }
 
 #[test]
 fn data_files_are_found_beside_the_scene() {
-    let folder = tempfile::tempdir().unwrap();
-    let scene_path = folder.path().join("s.toml");
-    let csv = |text: &str| std::fs::write(folder.path().join("paint.csv"), text).unwrap();
-    let text = changed(
-        "{ table = [[400, 0.2], [500, 0.4], [700, 0.8]] }",
-        "{ csv = \"paint.csv\" }",
-    );
-    std::fs::write(&scene_path, &text).unwrap();
-    let load = || scene::load(&scene_path, &Overrides::default());
+    let table = "{ table = [[400, 0.2], [500, 0.4], [700, 0.8]] }";
+    let folder = Folder::new(&changed(table, "{ csv = \"paint.csv\" }"));
+    let csv = |text: &str| folder.write("paint.csv", text);
+    let load = || Scene::load(folder.path("scene.toml"));
 
     csv("# source\nnm,value\n400,0.25\n700,0.5\n");
     let painted = load().unwrap().materials[1].value.surface.clone();
@@ -686,10 +651,8 @@ fn data_files_are_found_beside_the_scene() {
 
 #[test]
 fn a_data_file_that_is_not_there_is_shown_where_it_is_named() {
-    let text = changed(
-        "{ name = \"paint\", scale = 0.5 }",
-        "{ csv = \"no/such.csv\" }",
-    );
+    let pale = "{ name = \"paint\", scale = 0.5 }";
+    let text = changed(pale, "{ csv = \"no/such.csv\" }");
     let found = diagnostic(parse(&text), "csv");
     assert_eq!((found.line, found.column), (18, 16));
     // The rest of the message is the operating system's.
@@ -699,38 +662,34 @@ fn a_data_file_that_is_not_there_is_shown_where_it_is_named() {
 
 #[test]
 fn files_that_cannot_be_scenes() {
-    let folder = tempfile::tempdir().unwrap();
-    let load = |path: &Path| scene::load(path, &Overrides::default()).unwrap_err();
-    assert!(matches!(load(folder.path()), SceneError::Directory { .. }));
-    let path = folder.path().join("s.toml");
-    assert!(matches!(load(&path), SceneError::Unreadable { .. }));
-    std::fs::write(&path, b"title = \"ok\"\nabout = \"\xff\"\n").unwrap();
-    let error = load(&path);
+    let folder = Folder::empty();
+    let load = |file: &str| Scene::load(folder.path(file)).unwrap_err();
+    assert!(matches!(load(""), SceneError::Directory { .. }));
+    assert!(matches!(load("s.toml"), SceneError::Unreadable { .. }));
+    folder.write("s.toml", b"title = \"ok\"\nabout = \"\xff\"\n");
+    let error = load("s.toml");
     let found = error.diagnostic().unwrap();
     assert_eq!((found.line, found.column), (2, 10));
     assert_eq!(found.message, "not UTF-8 text");
-    let file = std::fs::File::create(&path).unwrap();
+    let file = std::fs::File::create(folder.path("s.toml")).unwrap();
     file.set_len(scene::LARGEST_FILE + 1).unwrap();
-    assert!(matches!(load(&path), SceneError::TooLarge { .. }));
+    assert!(matches!(load("s.toml"), SceneError::TooLarge { .. }));
     // A byte order mark is no part of the first line.
-    std::fs::write(&path, "\u{feff}titel = 1").unwrap();
-    assert_eq!(load(&path).diagnostic().unwrap().column, 1);
+    folder.write("s.toml", "\u{feff}titel = 1");
+    assert_eq!(load("s.toml").diagnostic().unwrap().column, 1);
 }
 
 #[test]
 fn the_scenes_that_come_with_the_project_are_valid() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    let mut count = 0;
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_some_and(|e| e == "toml") {
-            count += 1;
-            if let Err(error) = scene::load(&path, &Overrides::default()) {
-                panic!("{error}");
-            }
-        }
+    let scenes = files(&folder)
+        .into_iter()
+        .filter(|name| name.ends_with(".toml"));
+    let scenes: Vec<String> = scenes.collect();
+    assert!(!scenes.is_empty());
+    for name in scenes {
+        Scene::load(folder.join(name)).unwrap_or_else(|error| panic!("{error}"));
     }
-    assert!(count > 0);
 }
 
 #[test]
@@ -738,9 +697,7 @@ fn the_example_of_the_format_reference_is_valid() {
     let text = include_str!("../scenes/README.md");
     let (_, rest) = text.split_once("```toml\n").unwrap();
     let (example, _) = rest.split_once("```").unwrap();
-    if let Err(error) = parse(example) {
-        panic!("{error}");
-    }
+    parse(example).unwrap_or_else(|error| panic!("{error}"));
 }
 
 #[test]

@@ -1,10 +1,5 @@
 //! Several objects: ties of t, exact order, limits.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "the tests' own scenes are hit by construction"
-)]
-
 use etalon::inside::shape::list::{nearest, occluded};
 use etalon::inside::shape::{Placed, Query, Ray, ShapeKind, Start, Tally, Tier};
 use glam::DVec3;
@@ -12,6 +7,7 @@ use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
 use crate::shape_ladder::{KINDS, cubed, decade, placed};
+use crate::support::from_zero;
 
 fn free(_: usize) -> Start {
     Start::Free
@@ -21,14 +17,6 @@ fn all(objects: &[Placed]) -> impl Iterator<Item = (usize, &Placed)> {
     objects.iter().enumerate()
 }
 
-fn along(origin: DVec3, direction: DVec3) -> Query {
-    Query {
-        ray: Ray { origin, direction },
-        t_min: 0.0,
-        t_max: f64::INFINITY,
-    }
-}
-
 #[test]
 fn equal_t_goes_by_priority_then_index() {
     // A cube on a cube of twice the size, seen through the common plane z = 1 from inside.
@@ -36,7 +24,7 @@ fn equal_t_goes_by_priority_then_index() {
         placed(ShapeKind::Cube, 0.5, DVec3::new(0.0, 0.0, 1.5)),
         placed(ShapeKind::Cube, 1.0, DVec3::ZERO),
     ];
-    let up = along(DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.01, 0.03, 0.1));
+    let up = from_zero(DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.01, 0.03, 0.1));
     for (first, priority) in [(0, [0, 0]), (0, [0, 1]), (1, [1, 0])] {
         let mut tally = Tally::default();
         let (index, hit) = nearest(all(&cubes), &up, free, |i| priority[i], &mut tally).unwrap();
@@ -55,7 +43,7 @@ fn equal_irrational_t_is_recognised_and_the_smallest_difference_too() {
         placed(ShapeKind::Sphere, 1.0, DVec3::ZERO),
         placed(ShapeKind::Cylinder, 1.0, DVec3::ZERO),
     ];
-    let flat = along(DVec3::new(-3.0, 0.1, 0.0), DVec3::new(0.7, 0.1, 0.0));
+    let flat = from_zero(DVec3::new(-3.0, 0.1, 0.0), DVec3::new(0.7, 0.1, 0.0));
     for first in [0, 1] {
         let winner = |i: usize| u8::from(i != first);
         let (index, _) = nearest(all(&round), &flat, free, winner, &mut Tally::default()).unwrap();
@@ -67,7 +55,7 @@ fn equal_irrational_t_is_recognised_and_the_smallest_difference_too() {
         placed(ShapeKind::Sphere, 1.0, DVec3::X * 2f64.powi(-200)),
     ];
     for (side, first) in [(-3.0, 0), (3.0, 1)] {
-        let ray = along(DVec3::new(side, 0.1, 0.2), DVec3::new(-side, 0.05, 0.1));
+        let ray = from_zero(DVec3::new(side, 0.1, 0.2), DVec3::new(-side, 0.05, 0.1));
         let loser = |i: usize| u8::from(i == first);
         let mut tally = Tally::default();
         let (index, hit) = nearest(all(&spheres), &ray, free, loser, &mut tally).unwrap();
@@ -84,7 +72,7 @@ fn nearest_agrees_with_the_hits_one_by_one() {
             .map(|i| placed(KINDS[i], decade(&mut rng, -1.0, 0.5), 2.0 * cubed(&mut rng)))
             .collect();
         let from = 6.0 * cubed(&mut rng);
-        let query = along(from, 2.0 * cubed(&mut rng) - from);
+        let query = from_zero(from, 2.0 * cubed(&mut rng) - from);
         let mut tally = Tally::default();
         let single = objects
             .iter()
@@ -95,16 +83,10 @@ fn nearest_agrees_with_the_hits_one_by_one() {
         assert_eq!(single, several.map(|hit| hit.t));
         let Some(t) = single else { continue };
         found += 1;
-        let (before, past) = (
-            Query {
-                t_max: t * 0.999,
-                ..query
-            },
-            Query {
-                t_max: t * 1.001,
-                ..query
-            },
-        );
+        let [before, past] = [0.999, 1.001].map(|factor| Query {
+            t_max: t * factor,
+            ..query
+        });
         assert!(!occluded(all(&objects), &before, free, &mut tally));
         assert!(occluded(all(&objects), &past, free, &mut tally));
         assert!(!occluded(
@@ -133,23 +115,21 @@ fn limits_are_strict_except_at_zero() {
         let hit = cube.first_hit(&ray, t_min, Start::Free, &mut Tally::default());
         hit.map(|hit| hit.t)
     };
-    assert_eq!(t(-2.0, 0.0), Some(1.0));
-    assert_eq!(t(-2.0, 1.0), Some(3.0));
-    assert_eq!(t(-2.0, 3.0), None);
-    assert_eq!(t(-1.0, 0.0), Some(0.0));
-    assert_eq!(t(1.0, 0.0), Some(0.0));
+    for (origin, t_min, wanted) in [
+        (-2.0, 0.0, Some(1.0)),
+        (-2.0, 1.0, Some(3.0)),
+        (-2.0, 3.0, None),
+        (-1.0, 0.0, Some(0.0)),
+        (1.0, 0.0, Some(0.0)),
+    ] {
+        assert_eq!(t(origin, t_min), wanted);
+    }
     let query = |t_min, t_max| Query { ray, t_min, t_max };
     let cubes = [cube.clone()];
     let blocked = |q: Query| occluded(all(&cubes), &q, free, &mut Tally::default());
     assert!(!blocked(query(0.0, 1.0)) && blocked(query(0.0, 1.0 + f64::EPSILON)));
     assert!(!blocked(query(1.0, 3.0)) && blocked(query(0.0, f64::INFINITY)));
-    let touching = Query {
-        ray: Ray {
-            origin: DVec3::new(-1.0, 0.25, 0.5),
-            direction: -DVec3::X,
-        },
-        t_min: 0.0,
-        t_max: 9.0,
-    };
+    let mut touching = from_zero(DVec3::new(-1.0, 0.25, 0.5), -DVec3::X);
+    touching.t_max = 9.0;
     assert!(!blocked(touching));
 }

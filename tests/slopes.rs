@@ -1,40 +1,30 @@
 //! Power laws: intervals that hold as often as they say, wrong laws that are caught, and the laws
 //! of the samplers.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a fit that cannot be had has failed, and the panic says where"
-)]
-
-use std::path::Path;
-
-use etalon::inside::render::{Request, Unwatched, render};
 use etalon::inside::sample::Slot;
-use etalon::inside::scene::{SamplerKind, parse};
+use etalon::inside::scene::SamplerKind;
 use etalon::inside::stats::slope::{Replicates, Slope};
-use etalon::{Overrides, Plan};
+use etalon::{Plan, Scene};
 use etalon_doors::samplers::Numbers;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::Precision;
 use crate::sampling::{pixels_of, sequence};
+use crate::support::rendered;
 
 /// Values about a power law: `spread` is their relative standard deviation.
 fn planted(rng: &mut Pcg64Mcg, slope: f64, spread: f64, replicates: usize) -> Vec<Replicates> {
     // A sum of twelve uniform numbers is as good as normal here (variance 1).
     let mut normal = || (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0;
-    (0..7)
-        .map(|k| {
-            let x = f64::from(1u32 << k);
-            let value = 3.0 * x.powf(slope);
-            let values = (0..replicates).map(|_| value * (1.0 + spread * normal()));
-            Replicates {
-                x,
-                values: values.collect(),
-            }
-        })
-        .collect()
+    let mut point = |k: u32| {
+        let x = f64::from(1u32 << k);
+        let value = 3.0 * x.powf(slope);
+        let values = (0..replicates).map(|_| value * (1.0 + spread * normal()));
+        let values = values.collect();
+        Replicates { x, values }
+    };
+    (0..7).map(&mut point).collect()
 }
 
 #[test]
@@ -102,42 +92,38 @@ fn what_has_no_law_has_no_slope() {
 
 /// Root-mean-square slope of a sampler's error in the mean of f over the square, the truth given,
 /// for numbers of samples that are squares and powers of two.
-fn slope_of(
-    kind: SamplerKind,
-    f: impl Fn(u32, f64, f64) -> f64,
-    truth: impl Fn(u32) -> f64,
-) -> Slope {
+fn slope_of(kind: SamplerKind, f: impl Fn(u32, f64, f64) -> f64, truth: f64) -> Slope {
     const PIXELS: u32 = 64;
     const SETS: u64 = 16;
     let square_error = |n: u32, seed: u64| {
         let what = Numbers::Pair(Slot::Light, 0);
         let drawn = pixels_of(Precision::Double, sequence(kind, seed, n), what, PIXELS, n);
-        let errors = (0..PIXELS)
-            .zip(drawn.chunks(n as usize))
-            .map(|(pixel, points)| {
-                let sum: f64 = points.iter().map(|p| f(pixel, p[0], p[1])).sum();
-                let error = sum / f64::from(n) - truth(pixel);
-                error * error
-            });
-        errors.sum::<f64>() / f64::from(PIXELS)
+        let square = |(pixel, points): (u32, &[[f64; 5]])| {
+            let sum: f64 = points.iter().map(|p| f(pixel, p[0], p[1])).sum();
+            (sum / f64::from(n) - truth).powi(2)
+        };
+        let squares = (0..PIXELS).zip(drawn.chunks(n as usize)).map(square);
+        squares.sum::<f64>() / f64::from(PIXELS)
     };
-    let points: Vec<Replicates> = [16u32, 64, 256, 1024]
-        .iter()
-        .map(|&n| Replicates {
-            x: f64::from(n),
-            values: (0..SETS).map(|seed| square_error(n, 100 + seed)).collect(),
-        })
-        .collect();
-    Slope::fit(&points).unwrap().of_root(2.0)
+    root_slope(SETS, |n, seed| square_error(n, 100 + seed))
+}
+
+/// The slope of the root of squares over numbers of samples, from so many replicates.
+fn root_slope(replicates: u64, square: impl Fn(u32, u64) -> f64) -> Slope {
+    let point = |n: u32| Replicates {
+        x: f64::from(n),
+        values: (0..replicates).map(|k| square(n, k)).collect(),
+    };
+    Slope::fit(&[16, 64, 256, 1024].map(point))
+        .unwrap()
+        .of_root(2.0)
 }
 
 /// Whether a slope is within its own interval of what theory says, give or take `bend`.
 fn agrees(slope: Slope, theory: f64, bend: f64) {
     let [low, high] = slope.interval();
-    assert!(
-        low - bend <= theory && theory <= high + bend,
-        "{theory}: {slope:?}"
-    );
+    let within = (low - bend..=high + bend).contains(&theory);
+    assert!(within, "{theory}: {slope:?}");
     // The interval is narrow enough to tell −1/2, −3/4, −1 and −3/2 apart.
     assert!(high - low < 0.12, "{slope:?}");
 }
@@ -148,10 +134,9 @@ fn samplers_have_the_slopes_of_theory_where_the_integrand_is_smooth() {
     // variance 1/6N, jittered ones 1/6N² (each alone in its square of area 1/N), scrambled nets,
     // whose coordinates are stratified N times each, 1/6N³.
     let sum = |_: u32, u: f64, v: f64| u + v;
-    let truth = |_: u32| 1.0;
-    agrees(slope_of(SamplerKind::Independent, sum, truth), -0.5, 0.0);
-    agrees(slope_of(SamplerKind::Stratified, sum, truth), -1.0, 0.0);
-    agrees(slope_of(SamplerKind::Sobol, sum, truth), -1.5, 0.0);
+    agrees(slope_of(SamplerKind::Independent, sum, 1.0), -0.5, 0.0);
+    agrees(slope_of(SamplerKind::Stratified, sum, 1.0), -1.0, 0.0);
+    agrees(slope_of(SamplerKind::Sobol, sum, 1.0), -1.5, 0.0);
 }
 
 #[test]
@@ -162,49 +147,42 @@ fn samplers_fall_back_at_edges() {
     // bends the law by ln(1 + 1/8)/ln 64 = 0.03.
     let edge = |pixel: u32, u: f64, v: f64| {
         let angle = 0.1 + f64::from(pixel) * 0.6180339887;
-        f64::from(u8::from(
-            (u - 0.5) * angle.cos() + (v - 0.5) * angle.sin() < 0.0,
-        ))
+        let side = (u - 0.5) * angle.cos() + (v - 0.5) * angle.sin();
+        f64::from(u8::from(side < 0.0))
     };
     // A line through the centre halves the square.
-    let truth = |_: u32| 0.5;
-    agrees(slope_of(SamplerKind::Independent, edge, truth), -0.5, 0.0);
-    agrees(slope_of(SamplerKind::Stratified, edge, truth), -0.75, 0.03);
+    agrees(slope_of(SamplerKind::Independent, edge, 0.5), -0.5, 0.0);
+    agrees(slope_of(SamplerKind::Stratified, edge, 0.5), -0.75, 0.03);
     // Boxes of a net are of all shapes, and those that an edge cuts are no more than of squares.
-    agrees(slope_of(SamplerKind::Sobol, edge, truth), -0.75, 0.06);
+    agrees(slope_of(SamplerKind::Sobol, edge, 0.5), -0.75, 0.06);
 }
 
 /// Pictures of 8 × 8 pixels, one replicate each, of a scene with a camera that looks down the z axis.
 fn picture(objects: &str, kind: SamplerKind, spp: u32, seed: u64) -> Vec<f64> {
     let text = format!(
-        "[camera]\nfrom = [0, 0, 4]\nto = [0, 0, 0]\nfov = 30\n[image]\nsize = [8, 8]\nspp = {spp}\n\
-         seed = {seed}\nreplicates = 1\nsampler = \"{}\"\n{objects}",
+        "camera = {{ from = [0, 0, 4], to = [0, 0, 0], fov = 30 }}\n\
+         image = {{ size = [8, 8], spp = {spp}, seed = {seed}, replicates = 1, sampler = \"{}\" }}\n\
+         {objects}",
         kind.name()
     );
-    let scene = parse("slope", &text, Path::new("."), &Overrides::default()).unwrap();
+    let scene = Scene::parse(&text).unwrap();
     let plan = Plan::new(&scene, false).unwrap();
-    let request = Request::whole(scene.image.size, spp);
-    let rendered = render(&plan, &request, &mut Unwatched);
-    rendered.xyz().iter().map(|pixel| pixel.mean[1]).collect()
+    rendered(&scene, &plan)
+        .xyz()
+        .iter()
+        .map(|pixel| pixel.mean[1])
+        .collect()
 }
 
 /// Slope of the root-mean-square error of luminance, from pairs of pictures: half the square of
 /// their difference has the mean of the squared error, whatever the truth is.
 fn slope_on(objects: &str, kind: SamplerKind) -> Slope {
     const PAIRS: u64 = 24;
-    let square = |spp: u32, pair: u64| {
+    root_slope(PAIRS, |spp, pair| {
         let [a, b] = [2 * pair, 2 * pair + 1].map(|seed| picture(objects, kind, spp, seed));
         let squares = a.iter().zip(&b).map(|(a, b)| (a - b) * (a - b) / 2.0);
         squares.sum::<f64>() / a.len() as f64
-    };
-    let points: Vec<Replicates> = [16u32, 64, 256, 1024]
-        .iter()
-        .map(|&spp| Replicates {
-            x: f64::from(spp),
-            values: (0..PAIRS).map(|pair| square(spp, pair)).collect(),
-        })
-        .collect();
-    Slope::fit(&points).unwrap().of_root(2.0)
+    })
 }
 
 /// A wall close by under a point light beside the camera.

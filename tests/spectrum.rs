@@ -1,9 +1,6 @@
 //! Spectra against published points and closed forms.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a failed unwrap is a failed test, and says where"
-)]
+use std::path::Path;
 
 use etalon::inside::spectrum::cells::means;
 use etalon::inside::spectrum::ior::{
@@ -14,7 +11,8 @@ use etalon::inside::spectrum::observer::{
 };
 use etalon::inside::spectrum::rgb::{fit_emission, fit_reflectance};
 use etalon::inside::spectrum::{NM_MAX, NM_MIN, RgbError, Spectrum, Table, TableError, illuminant};
-use serde_json::Value;
+
+use crate::truth_file::{number, numbers, truth};
 
 use crate::wavelength_pdfs::{WavelengthPdf, hero_relative_variance};
 
@@ -28,21 +26,6 @@ const REC_709: [[f64; 2]; 4] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.312
 const LINE_D: f64 = 587.5618;
 const LINE_F: f64 = 486.1327;
 const LINE_C: f64 = 656.2725;
-
-fn truth(id: &str) -> Value {
-    let all: Value = serde_json::from_str(include_str!("data/truths.json")).unwrap();
-    let tests = all["tests"].as_array().unwrap();
-    tests.iter().find(|t| t["id"] == id).unwrap().clone()
-}
-
-fn numbers(value: &Value) -> Vec<f64> {
-    let list = value.as_array().unwrap();
-    list.iter().map(|v| v.as_f64().unwrap()).collect()
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap()
-}
 
 #[track_caller]
 fn assert_relative(got: f64, want: f64, tolerance: f64) {
@@ -60,6 +43,30 @@ fn whole_nm() -> impl Iterator<Item = f64> {
     (NM_MIN as u32..=NM_MAX as u32).map(f64::from)
 }
 
+/// The 1 nm trapezoid sum, which the truths integrate by.
+fn trapezoid(f: impl Fn(f64) -> [f64; 3]) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for nm in whole_nm() {
+        let weight = if nm == NM_MIN || nm == NM_MAX {
+            0.5
+        } else {
+            1.0
+        };
+        for (sum, f) in sum.iter_mut().zip(f(nm)) {
+            *sum += weight * f;
+        }
+    }
+    sum
+}
+
+fn table(nm: &[f64], values: &[f64]) -> Spectrum {
+    Spectrum::Table(Table::new(nm.to_vec(), values.to_vec()).unwrap())
+}
+
+fn blackbody(kelvin: f64, scale: f64) -> Spectrum {
+    Spectrum::Blackbody { kelvin, scale }
+}
+
 /// Ten digits are what the truths promise.
 const TEN_DIGITS: f64 = 1e-10;
 
@@ -69,22 +76,18 @@ const TEN_DIGITS: f64 = 1e-10;
 fn tables_reject_what_is_no_table() {
     let table = |nm: &[f64], values: &[f64]| Table::new(nm.to_vec(), values.to_vec());
     assert_eq!(table(&[], &[]), Err(TableError::Empty));
-    assert_eq!(
-        table(&[400.0, 500.0], &[1.0]),
-        Err(TableError::Length { nm: 2, values: 1 })
-    );
+    let uneven = TableError::Length { nm: 2, values: 1 };
+    assert_eq!(table(&[400.0, 500.0], &[1.0]), Err(uneven));
     assert!(matches!(
         table(&[400.0, 400.0], &[1.0, 1.0]),
         Err(TableError::NotIncreasing { number: 2, .. })
     ));
-    assert!(matches!(
-        table(&[400.0, 500.0], &[1.0, f64::NAN]),
-        Err(TableError::NotFinite { number: 2, .. })
-    ));
-    assert!(matches!(
-        table(&[400.0, f64::INFINITY], &[1.0, 1.0]),
-        Err(TableError::NotFinite { number: 2, .. })
-    ));
+    for (nm, value) in [(500.0, f64::NAN), (f64::INFINITY, 1.0)] {
+        assert!(matches!(
+            table(&[400.0, nm], &[1.0, value]),
+            Err(TableError::NotFinite { number: 2, .. })
+        ));
+    }
 }
 
 #[test]
@@ -93,16 +96,18 @@ fn csv_errors_name_the_line() {
         Err(TableError::Line { line, .. }) => line,
         other => panic!("expected the error of a line, got {other:?}"),
     };
-    assert_eq!(line("# head\nnm,value\n400,1\n390,2\n"), 4);
-    assert_eq!(line("400,1\n\n500,one\n"), 3);
-    assert_eq!(line("400,1\n# note\n500,1,2\n"), 3);
-    assert_eq!(line("400,1\n500,inf\n"), 2);
-    assert_eq!(line("400,1\nnm,value\n500,2\n"), 2);
-    assert_eq!(line("400,1\r\n500 2\r\n"), 2);
-    assert_eq!(
-        Table::from_csv("# nothing\nnm,value\n"),
-        Err(TableError::Empty)
-    );
+    for (text, number) in [
+        ("# head\nnm,value\n400,1\n390,2\n", 4),
+        ("400,1\n\n500,one\n", 3),
+        ("400,1\n# note\n500,1,2\n", 3),
+        ("400,1\n500,inf\n", 2),
+        ("400,1\nnm,value\n500,2\n", 2),
+        ("400,1\r\n500 2\r\n", 2),
+    ] {
+        assert_eq!(line(text), number, "{text}");
+    }
+    let nothing = Table::from_csv("# nothing\nnm,value\n");
+    assert_eq!(nothing, Err(TableError::Empty));
 }
 
 #[test]
@@ -114,8 +119,7 @@ fn csv_reads_what_it_should() {
 
 #[test]
 fn tables_are_linear_inside_and_zero_outside() {
-    let table = Table::new(vec![400.0, 500.0, 600.0], vec![1.0, 3.0, 2.0]).unwrap();
-    let spectrum = Spectrum::Table(table);
+    let spectrum = table(&[400.0, 500.0, 600.0], &[1.0, 3.0, 2.0]);
     for (nm, want) in [
         (399.999, 0.0),
         (400.0, 1.0),
@@ -131,9 +135,6 @@ fn tables_are_linear_inside_and_zero_outside() {
 
 #[test]
 fn bounds_hold_everywhere_and_are_attained() {
-    let table = |nm: &[f64], values: &[f64]| {
-        Spectrum::Table(Table::new(nm.to_vec(), values.to_vec()).unwrap())
-    };
     let cases = [
         (Spectrum::Constant(0.3), 0.3, 0.3),
         // Samples beyond the visible range do not count, the values at its ends do.
@@ -146,7 +147,6 @@ fn bounds_hold_everywhere_and_are_attained() {
         assert_eq!(spectrum.min_value(), min, "{spectrum:?}");
         assert_eq!(spectrum.max_value(), max, "{spectrum:?}");
     }
-    let blackbody = |kelvin, scale| Spectrum::Blackbody { kelvin, scale };
     let smooth = [
         blackbody(1000.0, 1.0),
         blackbody(5000.0, 2.0),
@@ -159,12 +159,9 @@ fn bounds_hold_everywhere_and_are_attained() {
     ];
     for spectrum in smooth {
         let (min, max) = (spectrum.min_value(), spectrum.max_value());
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for step in 0..=47_000 {
-            let value = spectrum.value(NM_MIN + f64::from(step) * 0.01);
-            low = low.min(value);
-            high = high.max(value);
-        }
+        let values = (0..=47_000).map(|step| spectrum.value(NM_MIN + f64::from(step) * 0.01));
+        let low = values.clone().fold(f64::INFINITY, f64::min);
+        let high = values.fold(f64::NEG_INFINITY, f64::max);
         assert!(
             min <= low && high <= max,
             "{spectrum:?}: {min} {low} {high} {max}"
@@ -179,24 +176,18 @@ fn bounds_hold_everywhere_and_are_attained() {
 
 #[test]
 fn only_constant_spectra_are_constant() {
-    let table = |nm: &[f64], values: &[f64]| {
-        Spectrum::Table(Table::new(nm.to_vec(), values.to_vec()).unwrap())
-    };
-    assert!(Spectrum::Constant(2.0).is_constant());
-    assert!(table(&[360.0, 830.0], &[0.5, 0.5]).is_constant());
-    assert!(!table(&[361.0, 830.0], &[0.5, 0.5]).is_constant());
-    assert!(!table(&[300.0, 400.0, 900.0], &[0.5, 0.6, 0.5]).is_constant());
-    assert!(
-        Spectrum::rgb_reflectance([0.2, 0.2, 0.2])
-            .unwrap()
-            .is_constant()
-    );
-    assert!(
-        !Spectrum::rgb_reflectance([0.2, 0.2, 0.3])
-            .unwrap()
-            .is_constant()
-    );
-    assert!(!Spectrum::d65(1.0).is_constant());
+    let grey = |blue| Spectrum::rgb_reflectance([0.2, 0.2, blue]).unwrap();
+    for (spectrum, constant) in [
+        (Spectrum::Constant(2.0), true),
+        (table(&[360.0, 830.0], &[0.5, 0.5]), true),
+        (table(&[361.0, 830.0], &[0.5, 0.5]), false),
+        (table(&[300.0, 400.0, 900.0], &[0.5, 0.6, 0.5]), false),
+        (grey(0.2), true),
+        (grey(0.3), false),
+        (Spectrum::d65(1.0), false),
+    ] {
+        assert_eq!(spectrum.is_constant(), constant, "{spectrum:?}");
+    }
 }
 
 // ---- observer
@@ -223,10 +214,9 @@ fn observer_has_the_published_points() {
 fn the_constant_of_y_is_the_trapezoid_sum() {
     let want = number(&truth("equal_energy_xyz")["exact"]["int_ybar_1nm"]);
     assert_eq!(Y_INTEGRAL, want);
-    let sum: f64 = whole_nm().map(|nm| xyz_bar(nm)[1]).sum();
-    let trapezoid = sum - 0.5 * (xyz_bar(NM_MIN)[1] + xyz_bar(NM_MAX)[1]);
-    assert_relative(trapezoid, want, 1e-14);
+    assert_relative(trapezoid(xyz_bar)[1], want, 1e-14);
     // The plain sum is another number.
+    let sum: f64 = whole_nm().map(|nm| xyz_bar(nm)[1]).sum();
     assert!((sum / want - 1.0).abs() > 1e-8);
 }
 
@@ -242,10 +232,8 @@ fn equal_energy_has_luminance_one() {
 #[test]
 fn box_spectra_have_their_xyz_and_rgb() {
     let truth = truth("equal_energy_xyz");
-    for row in truth["exact"]["rows"].as_array().unwrap() {
-        let ends = numbers(&row["box"]);
-        let spectrum = Spectrum::Table(Table::new(ends, vec![1.0, 1.0]).unwrap());
-        let xyz = spectrum_to_xyz(&spectrum);
+    for row in truth.rows("rows") {
+        let xyz = spectrum_to_xyz(&table(&numbers(&row["box"]), &[1.0, 1.0]));
         let rgb = xyz_to_linear_srgb(xyz);
         for i in 0..3 {
             assert_relative(xyz[i], numbers(&row["XYZ"])[i], TEN_DIGITS);
@@ -259,7 +247,7 @@ fn the_product_of_two_linear_pieces_is_integrated_exactly() {
     // A triangle with its corners between the observer's nodes: x̄ȳz̄ are linear in each of the
     // pieces, so Simpson's rule on every piece is exact as well.
     let corners = [500.3, 555.75, 600.6];
-    let spectrum = Spectrum::Table(Table::new(corners.to_vec(), vec![0.0, 2.0, 0.0]).unwrap());
+    let spectrum = table(&corners, &[0.0, 2.0, 0.0]);
     let mut nodes: Vec<f64> = (501..=600).map(f64::from).chain(corners).collect();
     nodes.sort_by(f64::total_cmp);
     let mut want = 0.0;
@@ -300,41 +288,26 @@ fn the_matrix_is_the_rounded_standard_one() {
 fn blackbodies_have_planck_s_radiance() {
     let truth = truth("blackbody");
     let wavelengths = numbers(&truth["setup"]["nm"]);
-    for row in truth["exact"]["rows"].as_array().unwrap() {
+    for row in truth.rows("rows") {
         let kelvin = number(&row["T"]);
-        let spectrum = Spectrum::Blackbody { kelvin, scale: 1.0 };
+        let spectrum = blackbody(kelvin, 1.0);
         for (nm, want) in wavelengths.iter().zip(numbers(&row["L"])) {
             assert_relative(spectrum.value(*nm), want, 1e-13);
         }
-        // The truth's quadrature is the 1 nm trapezoid of the product.
-        let mut sum = [0.0; 3];
-        for nm in whole_nm() {
-            let weight = if nm == NM_MIN || nm == NM_MAX {
-                0.5
-            } else {
-                1.0
-            };
-            for (total, bar) in sum.iter_mut().zip(xyz_bar(nm)) {
-                *total += weight * bar * spectrum.value(nm);
-            }
-        }
+        let sum = trapezoid(|nm| xyz_bar(nm).map(|bar| bar * spectrum.value(nm)));
         let all: f64 = sum.iter().sum();
         assert_relative(sum[1], number(&row["Y_integral"]), TEN_DIGITS);
-        assert_relative(
-            LUMINOUS_EFFICACY * sum[1],
-            number(&row["luminance_cd_m2"]),
-            TEN_DIGITS,
-        );
+        let luminance = number(&row["luminance_cd_m2"]);
+        assert_relative(LUMINOUS_EFFICACY * sum[1], luminance, TEN_DIGITS);
         assert_absolute(sum[0] / all, number(&row["x"]), TEN_DIGITS);
         assert_absolute(sum[1] / all, number(&row["y"]), TEN_DIGITS);
         // A curve f times a polygon g, integrated exactly, exceeds the trapezoid sum by h²/12 ∫ f″ g
         // up to higher orders in h = 1 nm (partial integration of Euler and Maclaurin's h² term).
-        let curvature: f64 = whole_nm()
-            .map(|nm| {
-                let f = |offset: f64| spectrum.value(nm + offset);
-                xyz_bar(nm)[1] * (f(-1.0) - 2.0 * f(0.0) + f(1.0))
-            })
-            .sum();
+        let bend = |nm: f64| {
+            let f = |offset: f64| spectrum.value(nm + offset);
+            xyz_bar(nm)[1] * (f(-1.0) - 2.0 * f(0.0) + f(1.0))
+        };
+        let curvature: f64 = whole_nm().map(bend).sum();
         let [x, y, z] = spectrum_to_xyz(&spectrum);
         assert_relative(y * Y_INTEGRAL, sum[1] + curvature / 12.0, 1e-9);
         // The same excess, about 1e-6, in x.
@@ -345,18 +318,17 @@ fn blackbodies_have_planck_s_radiance() {
 #[test]
 fn a_cold_body_is_dark() {
     for kelvin in [-1.0, 0.0, 1.0] {
-        let value = Spectrum::Blackbody { kelvin, scale: 1.0 }.value(555.0);
-        assert_eq!(value, 0.0, "{kelvin} K");
+        assert_eq!(blackbody(kelvin, 1.0).value(555.0), 0.0, "{kelvin} K");
     }
 }
 
 #[test]
 fn d65_has_the_published_points_and_its_white() {
     let published = illuminant::published_d65();
-    for (nm, want) in [(300.0, 0.0341), (380.0, 49.9755), (435.0, 95.7736)] {
-        assert_eq!(published.value(nm), want);
-    }
     for (nm, want) in [
+        (300.0, 0.0341),
+        (380.0, 49.9755),
+        (435.0, 95.7736),
         (560.0, 100.0),
         (700.0, 71.6091),
         (780.0, 63.3828),
@@ -429,12 +401,8 @@ fn reflectances_return_their_colour() {
 
 #[test]
 fn emissions_display_as_their_colour() {
-    for rgb in [
-        [1.0; 3],
-        [5.0, 1.0, 0.2],
-        [0.0, 100.0, 50.0],
-        [0.3, 0.3, 2.0],
-    ] {
+    let mixed = [[5.0, 1.0, 0.2], [0.0, 100.0, 50.0], [0.3, 0.3, 2.0]];
+    for rgb in [[1.0; 3]].into_iter().chain(mixed) {
         let fit = fit_emission(rgb).unwrap();
         let back = xyz_to_linear_srgb(spectrum_to_xyz(&fit.spectrum));
         for i in 0..3 {
@@ -443,24 +411,18 @@ fn emissions_display_as_their_colour() {
     }
     // White is attainable, to rounding.
     assert!(fit_emission([1.0; 3]).unwrap().residual < 1e-12);
-    assert_eq!(
-        Spectrum::rgb_emission([0.0; 3]),
-        Ok(Spectrum::Constant(0.0))
-    );
+    let black = Spectrum::rgb_emission([0.0; 3]);
+    assert_eq!(black, Ok(Spectrum::Constant(0.0)));
 }
 
 #[test]
 fn impossible_colours_are_refused() {
-    assert_eq!(
-        Spectrum::rgb_reflectance([0.5, 1.1, 0.0]),
-        Err(RgbError::Reflectance(1.1))
-    );
-    assert!(Spectrum::rgb_reflectance([0.5, f64::NAN, 0.0]).is_err());
-    assert_eq!(
-        Spectrum::rgb_emission([0.5, -1.0, 0.0]),
-        Err(RgbError::Emission(-1.0))
-    );
-    assert!(Spectrum::rgb_emission([f64::INFINITY, 0.0, 0.0]).is_err());
+    let reflectance = |green| Spectrum::rgb_reflectance([0.5, green, 0.0]);
+    assert_eq!(reflectance(1.1), Err(RgbError::Reflectance(1.1)));
+    assert!(reflectance(f64::NAN).is_err());
+    let emission = |green| Spectrum::rgb_emission([0.5, green, 0.0]);
+    assert_eq!(emission(-1.0), Err(RgbError::Emission(-1.0)));
+    assert!(emission(f64::INFINITY).is_err());
 }
 
 // ---- refractive indices
@@ -494,7 +456,7 @@ fn glasses_have_their_catalogue_index_and_abbe_number() {
 #[test]
 fn n_sf11_follows_its_dispersion() {
     let glass = named_glass("n-sf11").unwrap();
-    for row in truth("prism")["exact"]["rows"].as_array().unwrap() {
+    for row in truth("prism").rows("rows") {
         assert_relative(glass.n(number(&row["nm"])), number(&row["n"]), 1e-14);
     }
 }
@@ -525,11 +487,8 @@ fn metals_have_their_published_points() {
         ("Cu", 520.9, (1.18, 2.608)),
         ("Al", 619.93, (1.366, 7.4052)),
     ] {
-        assert_eq!(
-            named_metal(name).unwrap().n_k(nm),
-            want,
-            "{name} at {nm} nm"
-        );
+        let found = named_metal(name).unwrap().n_k(nm);
+        assert_eq!(found, want, "{name} at {nm} nm");
     }
     // Normal reflectances, roughly: silver white, gold and copper dark in the blue, aluminium near
     // 91 %. Measurements on different films scatter by 2 % or so.
@@ -548,10 +507,8 @@ fn metals_have_their_published_points() {
         assert!(metal.check().is_ok() && metal.disperses(), "{name}");
         for nm in [NM_MIN, NM_MAX].into_iter().chain(whole_nm()) {
             let (n, k) = metal.n_k(nm);
-            assert!(
-                n > 0.0 && k > 1.0 && n.is_finite() && k.is_finite(),
-                "{name} at {nm} nm"
-            );
+            let sane = n > 0.0 && k > 1.0 && n.is_finite() && k.is_finite();
+            assert!(sane, "{name} at {nm} nm");
         }
     }
     assert_eq!(named_metal("Fe"), None);
@@ -565,16 +522,14 @@ fn formulas_by_hand() {
     assert!(!RefractiveIndex::Cauchy(vec![1.5, 0.0]).disperses());
     assert!(!RefractiveIndex::Constant(1.5).disperses());
     let resonant = RefractiveIndex::sellmeier([1.0, 0.0, 0.0], [0.25, 0.0, 0.0]);
-    assert!(
-        resonant.check().is_err(),
-        "no index on the resonance at 500 nm"
-    );
-    assert!(RefractiveIndex::Constant(-1.5).check().is_err());
     let negative_k = RefractiveIndex::Complex {
         n: Spectrum::Constant(1.0),
         k: Spectrum::Constant(-1.0),
     };
-    assert!(negative_k.check().is_err());
+    // There is no index on the resonance at 500 nm.
+    for wrong in [resonant, RefractiveIndex::Constant(-1.5), negative_k] {
+        assert!(wrong.check().is_err(), "{wrong:?}");
+    }
 }
 
 // ---- wavelengths
@@ -583,12 +538,10 @@ fn formulas_by_hand() {
 fn the_visible_pdf_is_the_published_one() {
     let truth = truth("wavelength_pdf");
     let pdf = WavelengthPdf::Visible;
-    assert_relative(pdf.pdf(538.0), number(&truth["exact"]["A"]), 1e-14);
-    for (u, nm) in numbers(&truth["setup"]["u"])
-        .iter()
-        .zip(numbers(&truth["exact"]["lam"]))
-    {
-        assert_relative(pdf.sample(*u), nm, 1e-12);
+    assert_relative(pdf.pdf(538.0), truth.exact("A"), 1e-14);
+    let us = numbers(&truth["setup"]["u"]).into_iter();
+    for (u, nm) in us.zip(numbers(&truth["exact"]["lam"])) {
+        assert_relative(pdf.sample(u), nm, 1e-12);
     }
 }
 
@@ -599,20 +552,8 @@ fn one_wavelength_has_the_known_variance() {
         (WavelengthPdf::Visible, "relvar_visible"),
         (WavelengthPdf::Uniform, "relvar_uniform"),
     ] {
-        // The truth integrates by the 1 nm trapezoid.
-        let mut square = [0.0; 3];
-        let mut plain = [0.0; 3];
-        for nm in whole_nm() {
-            let weight = if nm == NM_MIN || nm == NM_MAX {
-                0.5
-            } else {
-                1.0
-            };
-            for (i, bar) in xyz_bar(nm).into_iter().enumerate() {
-                square[i] += weight * bar * bar / pdf.pdf(nm);
-                plain[i] += weight * bar;
-            }
-        }
+        let square = trapezoid(|nm| xyz_bar(nm).map(|bar| bar * bar / pdf.pdf(nm)));
+        let plain = trapezoid(xyz_bar);
         for i in 0..3 {
             let got = square[i] / (plain[i] * plain[i]) - 1.0;
             assert_relative(got, numbers(&truth["exact"][key])[i], 1e-9);
@@ -633,19 +574,14 @@ fn hero_sets_have_the_known_variance() {
     }
     // With four wavelengths the density that follows the observer beats it: 0.10 instead of 0.25
     // in the sum over X, Y, Z (an independent figure of two digits).
-    let sum: f64 = hero_relative_variance(WavelengthPdf::Observer, 4)
-        .iter()
-        .sum();
-    assert_absolute(sum, 0.10, 0.005);
+    let observer = hero_relative_variance(WavelengthPdf::Observer, 4);
+    assert_absolute(observer.iter().sum(), 0.10, 0.005);
 }
 
 #[test]
 fn densities_integrate_to_one_and_invert_their_distribution() {
-    for pdf in [
-        WavelengthPdf::Visible,
-        WavelengthPdf::Observer,
-        WavelengthPdf::Uniform,
-    ] {
+    use WavelengthPdf::{Observer, Uniform, Visible};
+    for pdf in [Visible, Observer, Uniform] {
         assert_eq!(pdf.sample(0.0), NM_MIN);
         assert_relative(pdf.sample(1.0), NM_MAX, 1e-13);
         assert_eq!(pdf.pdf(NM_MIN - 1e-9), 0.0);
@@ -677,17 +613,14 @@ fn hero_sets_rotate_one_number() {
 const CELL_NM: f64 = 0.25;
 
 fn cells(spectrum: &Spectrum) -> Vec<f64> {
-    let edges: Vec<f64> = (0..=1880)
-        .map(|i| NM_MIN + f64::from(i) * CELL_NM)
-        .collect();
-    means(spectrum, &edges)
+    let edges = (0..=1880).map(|i| NM_MIN + f64::from(i) * CELL_NM);
+    means(spectrum, &edges.collect::<Vec<_>>())
 }
 
 #[test]
 fn cells_hold_exact_means() {
     // A ramp that begins inside cell 162 and ends inside cell 562, with a kink at a cell's edge.
-    let spectrum =
-        Spectrum::Table(Table::new(vec![400.6, 450.0, 500.7], vec![1.0, 2.0, 4.0]).unwrap());
+    let spectrum = table(&[400.6, 450.0, 500.7], &[1.0, 2.0, 4.0]);
     let means = cells(&spectrum);
     assert_eq!(means.len(), 1880);
     assert_eq!(means[161], 0.0);
@@ -698,39 +631,25 @@ fn cells_hold_exact_means() {
     assert_relative(means[200], spectrum.value(410.125), 1e-14);
     let area = 0.5 * (3.0 * 49.4 + 6.0 * 50.7);
     assert_relative(means.iter().sum::<f64>() * CELL_NM, area, 1e-13);
-    let blackbody = Spectrum::Blackbody {
-        kelvin: 3000.0,
-        scale: 1.0,
-    };
-    let got = cells(&blackbody)[100];
-    let simpson = [385.0, 385.125, 385.25].map(|nm| blackbody.value(nm));
-    assert_relative(
-        got,
-        (simpson[0] + 4.0 * simpson[1] + simpson[2]) / 6.0,
-        1e-13,
-    );
+    let lamp = blackbody(3000.0, 1.0);
+    let [a, m, b] = [385.0, 385.125, 385.25].map(|nm| lamp.value(nm));
+    assert_relative(cells(&lamp)[100], (a + 4.0 * m + b) / 6.0, 1e-13);
 }
 
 // ---- data beside the scenes
 
 #[test]
 fn the_cornell_box_s_spectra_can_be_read() {
-    for (text, nm, want) in [
-        (
-            include_str!("../scenes/data/cornell_white.csv"),
-            400.0,
-            0.343,
-        ),
-        (include_str!("../scenes/data/cornell_red.csv"), 632.0, 0.62),
-        (
-            include_str!("../scenes/data/cornell_green.csv"),
-            532.0,
-            0.462,
-        ),
-        (include_str!("../scenes/data/cornell_lamp.csv"), 600.0, 15.6),
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/data");
+    for (name, nm, want) in [
+        ("white", 400.0, 0.343),
+        ("red", 632.0, 0.62),
+        ("green", 532.0, 0.462),
+        ("lamp", 600.0, 15.6),
     ] {
-        let table = Table::from_csv(text).unwrap();
-        assert_eq!(table.value(nm), want);
+        let file = folder.join(format!("cornell_{name}.csv"));
+        let table = Table::from_csv(&std::fs::read_to_string(file).unwrap()).unwrap();
+        assert_eq!(table.value(nm), want, "{name}");
         assert_eq!((table.nm[0], *table.nm.last().unwrap()), (400.0, 700.0));
     }
 }

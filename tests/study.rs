@@ -1,32 +1,21 @@
 //! `etalon study` and `etalon chart` from outside: what they write, how they go on, what they refuse.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test that cannot go on has failed, and the panic says where"
-)]
-
-use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::collections::BTreeSet;
 
 use etalon::inside::chart::row::{self, Row};
 use etalon::inside::chart::{Key, curves};
-use etalon::inside::film::{self, exr};
+use etalon::inside::film::{exr, hash, names};
 use etalon::inside::study::axis::Axis;
 use etalon::{Attribute, Picture};
-use tempfile::TempDir;
+
+use crate::support::{Folder, assert_says};
 
 /// A closed ball that glows and reflects half of what falls on it, seen from inside: 0.5/(1 − 0.5).
 const SCENE: &str = r#"
 truth = 1
-[camera]
-from = [0, 0, 0]
-to = [0, 0, -1]
-fov = 40
-[image]
-size = [16, 8]
-spp = 8
-[materials]
-wall = { diffuse = 0.5, emit = 0.5, sides = "back" }
+camera = { from = [0, 0, 0], to = [0, 0, -1], fov = 40 }
+image = { size = [16, 8], spp = 8 }
+materials.wall = { diffuse = 0.5, emit = 0.5, sides = "back" }
 [[object]]
 shape = "sphere"
 material = "wall"
@@ -36,53 +25,19 @@ truth = 2
 materials = { wall = { emit = 1 } }
 "#;
 
-/// A directory with that scene.
-struct Studio(TempDir);
+/// What a study says that is carried out.
+#[track_caller]
+fn study(folder: &Folder, arguments: &[&str]) -> String {
+    folder.done(&[&["study", "scene.toml", "--quiet"], arguments].concat())
+}
 
-impl Studio {
-    fn new(scene: &str) -> Self {
-        let directory = tempfile::tempdir().unwrap();
-        std::fs::write(directory.path().join("ball.toml"), scene).unwrap();
-        Self(directory)
-    }
+#[track_caller]
+fn refused(folder: &Folder, arguments: &[&str]) -> String {
+    folder.refused(&[&["study", "scene.toml"], arguments].concat())
+}
 
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-
-    fn run(&self, arguments: &[&str]) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_etalon"))
-            .current_dir(self.path())
-            .args(arguments)
-            .stdin(Stdio::null())
-            .output()
-            .unwrap()
-    }
-
-    /// What a study says that is carried out.
-    fn study(&self, arguments: &[&str]) -> String {
-        let output = self.run(&[&["study", "ball.toml", "--quiet"], arguments].concat());
-        let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {complaint}");
-        String::from_utf8(output.stdout).unwrap()
-    }
-
-    /// What is said when a command is refused.
-    fn refused(&self, arguments: &[&str]) -> String {
-        let output = self.run(arguments);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-        let message = String::from_utf8(output.stderr).unwrap();
-        assert!(message.starts_with("error: "), "{message}");
-        message
-    }
-
-    fn rows(&self, table: &str) -> Vec<Row> {
-        row::read(&self.text(table)).unwrap()
-    }
-
-    fn text(&self, file: &str) -> String {
-        std::fs::read_to_string(self.path().join(file)).unwrap()
-    }
+fn rows(folder: &Folder, table: &str) -> Vec<Row> {
+    row::read(&folder.text(table)).unwrap()
 }
 
 /// Everything in a row but the time it took.
@@ -102,19 +57,19 @@ const GRID: [&str; 6] = [
     "4",
 ];
 
+/// The grid with more arguments.
+fn grid<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    [&GRID, more].concat()
+}
+
 #[test]
 fn a_study_writes_rows_charts_and_a_report() {
-    let studio = Studio::new(SCENE);
-    let said = studio.study(&[&GRID[..], &["-o", "out"]].concat());
-    assert!(
-        said.contains("the truth that the scene file names"),
-        "{said}"
-    );
-    let rows = studio.rows("out/study.csv");
+    let folder = Folder::new(SCENE);
+    let said = study(&folder, &grid(&["-o", "out"]));
+    assert_says(&said, &["the truth that the scene file names"]);
+    let rows = rows(&folder, "out/study.csv");
     assert_eq!(rows.len(), 3 * 2 * 4);
-    let mut seeds: Vec<u64> = rows.iter().map(|row| row.seed).collect();
-    seeds.sort_unstable();
-    seeds.dedup();
+    let seeds: BTreeSet<u64> = rows.iter().map(|row| row.seed).collect();
     assert_eq!(seeds.len(), rows.len(), "seeds are shared");
     for row in &rows {
         assert_eq!(row.samples, 16 * 8 * row.spp() as u64);
@@ -124,98 +79,76 @@ fn a_study_writes_rows_charts_and_a_report() {
         assert_eq!(row.estimated_rmse.is_nan(), row.spp() == 1.0, "{row}");
     }
     for name in ["error", "speed", "honesty"] {
-        assert!(studio.text(&format!("out/{name}.svg")).starts_with("<svg"));
+        assert!(folder.text(&format!("out/{name}.svg")).starts_with("<svg"));
     }
-    let page = studio.text("out/report.html");
-    for part in [
-        "<svg",
-        "data-picture=\"curve-1\"",
-        "independent",
-        "--over spp=1..16x4",
-        "relmse",
-    ] {
-        assert!(page.contains(part), "{part}");
-    }
+    let page = folder.text("out/report.html");
+    let picture = "data-picture=\"curve-1\"";
+    assert_says(
+        &page,
+        &[
+            "<svg",
+            picture,
+            "independent",
+            "--over spp=1..16x4",
+            "relmse",
+        ],
+    );
     assert!(!page.contains("{{"), "a place of the page is left empty");
 }
 
 #[test]
 fn errors_of_the_panel_are_against_the_panels_truth() {
-    let studio = Studio::new(SCENE);
-    let grid = [
-        "--over",
-        "spp=64",
-        "--replicates",
-        "8",
-        "-o",
-        "out",
-        "--panel",
-        "bright",
-    ];
-    studio.study(&grid);
-    let rows = studio.rows("out/study.csv");
-    assert!(rows.iter().all(|row| row.panel == "bright"));
+    let folder = Folder::new(SCENE);
+    let study = |more: &[&str]| {
+        let grid = ["--over", "spp=64", "--replicates", "8", "--panel", "bright"];
+        study(&folder, &[&grid, more].concat())
+    };
+    study(&["-o", "out"]);
     // The wrong truth, 1 instead of 2, would show as a bias of 1.
-    for row in &rows {
-        assert!(
-            row.bias.abs() < 6.0 * row.bias_standard_error,
-            "{row}: {}",
-            row.bias
-        );
+    for row in rows(&folder, "out/study.csv") {
+        assert_eq!(row.panel, "bright");
+        let scores = row.bias.abs() / row.bias_standard_error;
+        assert!(scores < 6.0, "{row}: {}", row.bias);
         assert!(row.bias_standard_error < 0.05);
     }
-    let wrong = [
-        &grid[..4],
-        &["-o", "wrong", "--panel", "bright", "--reference", "1"],
-    ]
-    .concat();
-    studio.study(&wrong);
-    for row in studio.rows("wrong/study.csv") {
+    study(&["-o", "wrong", "--reference", "1"]);
+    for row in rows(&folder, "wrong/study.csv") {
         assert!(row.bias > 0.9, "{row}: {}", row.bias);
     }
 }
 
 #[test]
 fn an_interrupted_study_goes_on_where_it_stopped() {
-    let studio = Studio::new(SCENE);
-    let arguments = [&GRID[..], &["-o", "out"]].concat();
-    studio.study(&arguments);
-    let whole = studio.text("out/study.csv");
-    let rows = studio.rows("out/study.csv");
+    let folder = Folder::new(SCENE);
+    let (arguments, table) = (grid(&["-o", "out"]), "out/study.csv");
+    study(&folder, &arguments);
+    let whole = folder.text(table);
+    let before = rows(&folder, table);
     // A line that was cut off, and all after it gone.
     let lines: Vec<&str> = whole.lines().collect();
     let kept = format!("{}\n{}", lines[..11].join("\n"), &lines[11][..20]);
-    std::fs::write(studio.path().join("out/study.csv"), kept).unwrap();
-    studio.study(&arguments);
-    let again = studio.text("out/study.csv");
+    folder.write(table, kept);
+    study(&folder, &arguments);
+    let again = folder.text(table);
     assert_eq!(again.lines().take(11).collect::<Vec<_>>(), lines[..11]);
-    let all: Vec<Row> = studio.rows("out/study.csv");
+    let all = rows(&folder, table);
     let same = |(a, b): (&Row, &Row)| format!("{:?}", timeless(a)) == format!("{:?}", timeless(b));
-    assert!(all.iter().zip(&rows).all(same));
-    assert_eq!(all.len(), rows.len());
+    assert!(all.iter().zip(&before).all(same));
+    assert_eq!(all.len(), before.len());
     // Nothing is left to do: nothing is done.
-    studio.study(&arguments);
-    assert_eq!(studio.text("out/study.csv"), again);
-    let other = [
-        &["study", "ball.toml", "-o", "out"],
-        &GRID[..4],
-        &["--replicates", "5"],
-    ]
-    .concat();
-    let message = studio.refused(&other);
-    assert!(
-        message.contains("another study") && message.contains("replicates"),
-        "{message}"
-    );
+    study(&folder, &arguments);
+    assert_eq!(folder.text(table), again);
+    let other = [&GRID[..4], &["--replicates", "5", "-o", "out"]].concat();
+    assert_says(&refused(&folder, &other), &["another study", "replicates"]);
 }
 
 #[test]
 fn without_truth_a_study_renders_its_own_reference() {
     let scene = SCENE.replace("truth = 1\n", "").replace("truth = 2\n", "");
-    let studio = Studio::new(&scene);
-    let said = studio.study(&[&GRID[..], &["-o", "out"]].concat());
-    assert!(said.contains("rendered by the study itself"), "{said}");
-    let rows = studio.rows("out/study.csv");
+    let folder = Folder::new(&scene);
+    let said = study(&folder, &grid(&["-o", "out"]));
+    assert_says(&said, &["rendered by the study itself"]);
+    let rows = rows(&folder, "out/study.csv");
     let best = curves(&rows, Key::Spp)
         .iter()
         .flat_map(|curve| curve.points.clone())
@@ -227,154 +160,103 @@ fn without_truth_a_study_renders_its_own_reference() {
     assert!(own > 0.0 && best / own > 0.75 * 3.0, "{best} {own}");
     assert!(rows.iter().all(|row| row.reference == "own"));
     // A second study with this one's reference as a file: its variance is known, its hash agrees.
-    let again = [
-        &GRID[..],
-        &["-o", "again", "--reference", "out/reference.exr"],
-    ]
-    .concat();
-    studio.study(&again);
-    let message = studio.refused(&[
-        "study",
-        "ball.toml",
-        "--panel",
-        "bright",
-        "--reference",
-        "out/reference.exr",
-    ]);
-    assert!(message.contains("the panel \"bright\""), "{message}");
+    let reference = ["--reference", "out/reference.exr"];
+    study(&folder, &[&grid(&["-o", "again"]), &reference[..]].concat());
+    let panel = [&reference[..], &["--panel", "bright"]].concat();
+    assert_says(&refused(&folder, &panel), &["the panel \"bright\""]);
 }
 
 #[test]
 fn references_that_are_none_are_refused_with_a_reason() {
-    let studio = Studio::new(SCENE);
-    let pixels = 16 * 8;
-    let reference = |size: [usize; 2], value: f32, variance: Option<f32>, hash: &str| {
+    let folder = Folder::new(SCENE);
+    let own = hash(SCENE);
+    let (size, zero) = ([16, 8], Some(0.0));
+    let pixels = format!("the channel R has {} pixels that are no numbers", 16 * 8);
+    for (size, value, variance, hash, words) in [
+        ([8, 8], 1.0, zero, &own, vec!["8x8 pixels, the scene 16x8"]),
+        (size, f32::NAN, zero, &own, vec![pixels.as_str()]),
+        (size, 1.0, Some(-1.0), &own, vec!["variance.R"]),
+        (size, 1.0, None, &own, vec!["no channels variance.R"]),
+        (
+            size,
+            1.0,
+            zero,
+            &hash("another"),
+            vec!["shows another scene", &own],
+        ),
+    ] {
         let mut picture = Picture::new(size[0], size[1]);
-        let all = vec![[value; 3]; size[0] * size[1]];
-        picture.push_triple("", ["R", "G", "B"], &all);
+        let all = |value: f32| vec![[value; 3]; size[0] * size[1]];
+        picture.push_triple("", names::RGB, &all(value));
         if let Some(variance) = variance {
-            let all = vec![[variance; 3]; size[0] * size[1]];
-            picture.push_triple("variance", ["R", "G", "B"], &all);
+            picture.push_triple("variance", names::RGB, &all(variance));
         }
         let attribute = Attribute::Text(hash.to_owned());
         picture.attributes.push(("sceneHash".to_owned(), attribute));
-        exr::write(&studio.path().join("reference.exr"), &picture).unwrap();
-    };
-    let study = || studio.refused(&["study", "ball.toml", "--reference", "reference.exr"]);
-    let hash = film::hash(SCENE);
-    reference([8, 8], 1.0, Some(0.0), &hash);
-    assert!(study().contains("8x8 pixels, the scene 16x8"));
-    reference([16, 8], f32::NAN, Some(0.0), &hash);
-    assert!(study().contains(&format!(
-        "the channel R has {pixels} pixels that are no numbers"
-    )));
-    reference([16, 8], 1.0, Some(-1.0), &hash);
-    assert!(study().contains("variance.R"));
-    reference([16, 8], 1.0, None, &hash);
-    assert!(study().contains("no channels variance.R"));
-    reference([16, 8], 1.0, Some(0.0), &film::hash("another"));
-    let message = study();
-    assert!(
-        message.contains("shows another scene") && message.contains(&hash),
-        "{message}"
-    );
-    assert!(
-        !studio.path().join("ball-study").exists(),
-        "refused, and yet begun"
-    );
-    let missing = studio.refused(&["study", "ball.toml", "--reference", "nowhere.exr"]);
-    assert!(missing.contains("nowhere.exr"));
+        exr::write(&folder.path("reference.exr"), &picture).unwrap();
+        let message = refused(&folder, &["--reference", "reference.exr"]);
+        assert_says(&message, &words);
+    }
+    let missing = refused(&folder, &["--reference", "nowhere.exr"]);
+    assert_says(&missing, &["nowhere.exr"]);
 }
 
 #[test]
 fn grids_that_cannot_be_are_refused_with_what_would_fit() {
-    let studio = Studio::new(SCENE);
-    let refused =
-        |arguments: &[&str]| studio.refused(&[&["study", "ball.toml"], arguments].concat());
-    assert!(refused(&["--replicates", "1"]).contains("at least 2"));
-    assert!(refused(&["--over", "spp="]).contains("no values"));
-    assert!(refused(&["--over", "spp=4..1x2"]).contains("is no range"));
-    assert!(refused(&["--over", "spp=1..4x1"]).contains("is no range"));
-    assert!(refused(&["--over", "fov=1"]).contains("cannot go over"));
-    assert!(refused(&["--over", "sampler"]).contains("is no axis"));
-    assert!(refused(&["--over", "spp=1,2", "--over", "spp=4"]).contains("given twice"));
-    assert!(refused(&["--over", "wavelengths=1,8"]).contains("image.wavelengths is 1"));
-    let mixed = refused(&["--over", "sampler=center,sobol"]);
-    assert!(mixed.contains("another picture"), "{mixed}");
-    let long = refused(&["--over", "spp=1..16777216x4", "--budget", "2"]);
-    assert!(
-        long.contains("an axis that ends at spp=") && long.contains("--budget is 2 s"),
-        "{long}"
-    );
-    let one = refused(&[
-        "--over",
-        "max_depth=1..4x2",
-        "--set",
-        "image.spp=1000000",
-        "--budget",
-        "2",
-    ]);
-    assert!(one.contains("--set image.spp="), "{one}");
-    let large = refused(&["--over", "spp=1", "--set", "image.size=[16384, 16384]"]);
-    assert!(large.contains("image.size=["), "{large}");
-    assert!(!studio.path().join("ball-study").exists());
+    let folder = Folder::new(SCENE);
+    let wide = "--over max_depth=1..4x2 --set image.spp=1000000 --budget 2";
+    for (arguments, words) in [
+        ("--replicates 1", &["at least 2"][..]),
+        ("--over spp=", &["no values"]),
+        ("--over spp=4..1x2", &["is no range"]),
+        ("--over spp=1..4x1", &["is no range"]),
+        ("--over fov=1", &["cannot go over"]),
+        ("--over sampler", &["is no axis"]),
+        ("--over spp=1,2 --over spp=4", &["given twice"]),
+        ("--over wavelengths=1,8", &["image.wavelengths is 1"]),
+        ("--over sampler=center,sobol", &["another picture"]),
+        (
+            "--over spp=1..16777216x4 --budget 2",
+            &["an axis that ends at spp=", "--budget is 2 s"],
+        ),
+        (wide, &["--set image.spp="]),
+        (
+            "--over spp=1 --set image.size=[16384,16384]",
+            &["image.size=["],
+        ),
+    ] {
+        let arguments: Vec<&str> = arguments.split(' ').collect();
+        assert_says(&refused(&folder, &arguments), words);
+    }
 }
 
 #[test]
 fn several_tables_go_into_one_chart() {
-    let studio = Studio::new(SCENE);
-    let own = [&GRID[..], &["-o", "out"]].concat();
-    studio.study(&own);
+    let folder = Folder::new(SCENE);
+    study(&folder, &grid(&["-o", "out"]));
     // Another program, ten times as slow and as accurate, with the required columns only.
     let mut other = String::from("renderer,scene,spp,seconds,relmse,sampler\n");
-    for row in studio.rows("out/study.csv") {
+    for row in rows(&folder, "out/study.csv") {
         if row.value(Key::Sampler) == "sobol" {
             let (spp, seconds) = (row.spp(), 10.0 * row.seconds);
-            other += &format!("slow,ball,{spp},{seconds},{},multijitter\n", row.relmse);
+            other += &format!("slow,scene,{spp},{seconds},{},multijitter\n", row.relmse);
         }
     }
-    std::fs::write(studio.path().join("slow.csv"), other).unwrap();
-    let output = studio.run(&[
-        "chart",
-        "out/study.csv",
-        "slow.csv",
-        "-o",
-        "both",
-        "--at",
-        "1e-2",
-    ]);
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert_eq!(
-        output.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    assert!(said.contains("3 curves of 36 renders"), "{said}");
-    assert!(
-        said.contains("etalon takes") && said.contains("slow"),
-        "{said}"
-    );
-    let svg = studio.text("both.svg");
-    assert!(
-        svg.contains("slow, multijitter") && svg.contains("etalon, sobol"),
-        "{svg}"
-    );
-    std::fs::write(studio.path().join("bad.csv"), "renderer,scene,spp\n").unwrap();
-    assert!(
-        studio
-            .refused(&["chart", "bad.csv"])
-            .contains("no column \"seconds\"")
-    );
-    let text = "renderer,scene,spp,seconds,relmse\na,b,1,fast,1\n";
-    std::fs::write(studio.path().join("bad.csv"), text).unwrap();
-    let message = studio.refused(&["chart", "bad.csv"]);
-    assert!(
-        message.contains("line 2") && message.contains("\"fast\""),
-        "{message}"
-    );
-    std::fs::write(studio.path().join("bad.csv"), row::heading()).unwrap();
-    assert!(studio.refused(&["chart", "bad.csv"]).contains("no rows"));
+    folder.write("slow.csv", other);
+    let tables = ["chart", "out/study.csv", "slow.csv"];
+    let said = folder.done(&[&tables[..], &["-o", "both", "--at", "1e-2"]].concat());
+    assert_says(&said, &["3 curves of 36 renders", "etalon takes", "slow"]);
+    let svg = folder.text("both.svg");
+    assert_says(&svg, &["slow, multijitter", "etalon, sobol"]);
+    let fast = "renderer,scene,spp,seconds,relmse\na,b,1,fast,1\n";
+    for (table, words) in [
+        ("renderer,scene,spp\n", &["no column \"seconds\""][..]),
+        (fast, &["line 2", "\"fast\""]),
+        (&row::heading(), &["no rows"]),
+    ] {
+        folder.write("bad.csv", table);
+        assert_says(&folder.refused(&["chart", "bad.csv"]), words);
+    }
 }
 
 #[test]

@@ -1,6 +1,11 @@
-//! The test suite, one binary. It compiles no lane code: tests that ask lanes knock at `etalon-doors`.
+//! The test suite, one binary. It compiles no lane code: what tests ask of lanes is a function of
+//! `etalon-doors`.
 
 #![allow(clippy::too_many_lines, reason = "tables of cases are long")]
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that cannot go on has failed, and the panic says where"
+)]
 
 mod agreement;
 mod cli;
@@ -50,6 +55,7 @@ mod spectrum;
 mod statistics;
 mod statistics_support;
 mod study;
+mod support;
 mod truth_file;
 mod truths;
 mod wavelength_grid;

@@ -1,14 +1,44 @@
 //! The closed-form truths of `tests/data/truths.json`, or of the file that the environment variable
 //! `ETALON_TRUTHS` names.
 
-#![allow(clippy::unwrap_used, reason = "the file is part of the tests")]
-
+use std::ops::Deref;
 use std::sync::OnceLock;
 
+use glam::DVec3;
 use serde_json::Value;
 
-/// The entry of this id.
-pub fn truth(id: &str) -> Value {
+/// An entry of the file, with a set-up and exact answers.
+pub struct Truth(Value);
+
+impl Deref for Truth {
+    type Target = Value;
+
+    fn deref(&self) -> &Value {
+        &self.0
+    }
+}
+
+impl Truth {
+    pub fn of(&self, key: &str) -> f64 {
+        number(&self.0["setup"][key])
+    }
+
+    /// Several numbers of the set-up.
+    pub fn all<const N: usize>(&self, keys: [&str; N]) -> [f64; N] {
+        keys.map(|key| self.of(key))
+    }
+
+    pub fn exact(&self, key: &str) -> f64 {
+        number(&self.0["exact"][key])
+    }
+
+    /// A list of the exact answers.
+    pub fn rows(&self, key: &str) -> &[Value] {
+        list(&self.0["exact"][key])
+    }
+}
+
+pub fn truth(id: &str) -> Truth {
     static ALL: OnceLock<Value> = OnceLock::new();
     let all = ALL.get_or_init(|| {
         let text = match std::env::var_os("ETALON_TRUTHS") {
@@ -17,20 +47,22 @@ pub fn truth(id: &str) -> Value {
         };
         serde_json::from_str(&text).unwrap()
     });
-    let found = all["tests"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .find(|t| t["id"] == id);
-    found.unwrap().clone()
+    let found = list(&all["tests"]).iter().find(|t| t["id"] == id);
+    Truth(found.unwrap().clone())
 }
 
-/// A number of the file.
-pub fn number(v: &Value) -> f64 {
-    v.as_f64().unwrap()
+pub fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
 }
 
-/// A list of the file.
-pub fn list(v: &Value) -> &[Value] {
-    v.as_array().unwrap()
+pub fn list(value: &Value) -> &[Value] {
+    value.as_array().unwrap()
+}
+
+pub fn numbers(value: &Value) -> Vec<f64> {
+    list(value).iter().map(number).collect()
+}
+
+pub fn vector(value: &Value) -> DVec3 {
+    DVec3::from_slice(&numbers(value))
 }

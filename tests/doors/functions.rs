@@ -13,7 +13,6 @@ columns! {
         [sine, cosine]
     }
 
-    /// ln x.
     logarithm(l, [x]: 1) -> 1 {
         [ln(l, x)]
     }

@@ -5,23 +5,18 @@ use etalon_lanes::math::interval::{Domain, Interval};
 use etalon_lanes::math::lanes::{Mask, Real};
 use etalon_lanes::math::packet::each;
 
-/// Bounds of many intervals.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Bounds {
-    /// Lower bounds.
     pub low: Vec<f64>,
-    /// Upper bounds.
     pub high: Vec<f64>,
 }
 
 impl Bounds {
-    /// Adds an interval.
     pub fn push(&mut self, [low, high]: [f64; 2]) {
         self.low.push(low);
         self.high.push(high);
     }
 
-    /// Those of one interval.
     pub fn at(&self, i: usize) -> [f64; 2] {
         [self.low[i], self.high[i]]
     }
@@ -33,58 +28,28 @@ impl Bounds {
     }
 }
 
-/// Arithmetic of intervals.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Operation {
-    /// a + b.
-    Sum,
-    /// a − b.
-    Difference,
-    /// a · b.
-    Product,
-    /// a / b.
-    Quotient,
-    /// √a.
-    SquareRoot,
+/// An enum of these variants, and the list of all.
+macro_rules! listed {
+    ($(#[$doc:meta])* $name:ident: $($variant:ident),+) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum $name {
+            $($variant),+
+        }
+
+        impl $name {
+            pub const ALL: &[Self] = &[$(Self::$variant),+];
+        }
+    };
 }
 
-/// Elementary functions of intervals.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Function {
-    /// eˣ.
-    Exponential,
-    /// ln x.
-    Logarithm,
-    /// sin x.
-    Sine,
-    /// cos x.
-    Cosine,
-    /// sin x as for short intervals.
-    SineThin,
-    /// cos x as for short intervals.
-    CosineThin,
-    /// tan x.
-    Tangent,
-    /// arcsin x.
-    ArcSine,
-    /// arccos x.
-    ArcCosine,
-    /// arctan x.
-    ArcTangent,
-    /// Angle of the point (y, x).
-    ArcTangent2,
-    /// sinh x.
-    HyperbolicSine,
-    /// cosh x.
-    HyperbolicCosine,
-    /// tanh x.
-    HyperbolicTangent,
-    /// xʸ.
-    Power,
-    /// x⁷.
-    Seventh,
-    /// x⁻⁴.
-    MinusFourth,
+listed! { Operation: Sum, Difference, Product, Quotient, SquareRoot }
+
+listed! {
+    /// Those called thin are made for short intervals.
+    Function: Exponential, Logarithm, Sine, Cosine, SineThin, CosineThin, Tangent, ArcSine, ArcCosine,
+    ArcTangent, ArcTangent2, HyperbolicSine, HyperbolicCosine, HyperbolicTangent, Power, Seventh,
+    MinusFourth
 }
 
 /// An operation on as many intervals as fill packets of any width. `to_nearest` leaves out the
@@ -114,11 +79,8 @@ pub fn function(
     function: Function,
     [a, b]: [&Bounds; 2],
 ) -> (Bounds, Vec<bool>) {
-    set.run(Each {
-        job: function,
-        a,
-        b,
-    })
+    let job = function;
+    set.run(Each { job, a, b })
 }
 
 /// Something made of a packet of intervals.
@@ -144,10 +106,8 @@ impl<J: OfIntervals> Job<f64> for Each<'_, J> {
     fn run<L: DoubleLanes>(self, l: L) -> Self::Output {
         let count = self.a.low.len();
         assert!(count.is_multiple_of(8), "{count} intervals");
-        let mut bounds = Bounds {
-            low: vec![0.0; count],
-            high: vec![0.0; count],
-        };
+        let [low, high] = [(); 2].map(|()| vec![0.0; count]);
+        let mut bounds = Bounds { low, high };
         let mut broken = vec![false; count];
         for i in (0..count).step_by(L::COUNT) {
             let a = Interval::new(l, l.load(&self.a.low[i..]), l.load(&self.a.high[i..]));

@@ -5,6 +5,8 @@
 //! its arguments tell, a precision. Numbers come as f64 and are rounded to the precision first;
 //! results are widened exactly.
 
+#![allow(missing_docs, reason = "for this repository's tests alone")]
+
 mod columns;
 pub mod fields;
 pub mod fresnel;
@@ -20,9 +22,7 @@ pub mod words;
 /// Tables of lane code, made in one of the precisions.
 #[derive(Debug, Clone, Copy)]
 pub enum Made<S, D> {
-    /// Of f32.
     Single(S),
-    /// Of f64.
     Double(D),
 }
 

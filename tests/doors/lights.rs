@@ -15,9 +15,7 @@ pub type AnyLight<'a> = Made<&'a LightShape<f32>, &'a LightShape<f64>>;
 /// A direction towards a light, as lanes have it.
 #[derive(Debug, Clone, Copy)]
 pub struct LightSample {
-    /// From the receiver.
     pub direction: DVec3,
-    /// To the light's point.
     pub distance: f64,
     /// In solid angle, sr⁻¹.
     pub pdf: f64,

@@ -24,16 +24,13 @@ pub type AnyModel<'a> = Made<&'a Model<f32>, &'a Model<f64>>;
 pub struct Question {
     /// Scene units about the camera; a unit direction.
     pub ray: Ray,
-    /// The object it leaves.
     pub leaving: u32,
     /// Whether it goes into that object.
     pub inward: bool,
 }
 
-/// What a ray meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
-    /// Distance.
     pub t: f64,
     /// Number of the part, or [`NOTHING`].
     pub part: u32,
@@ -43,7 +40,6 @@ pub struct Answer {
     pub blocked: bool,
 }
 
-/// How rays are asked.
 #[derive(Debug, Clone, Copy)]
 pub struct Asking {
     /// By packets of twice the width.

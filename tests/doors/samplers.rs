@@ -26,7 +26,6 @@ pub enum Numbers {
 }
 
 impl Numbers {
-    /// How many there are.
     pub fn width(self) -> usize {
         match self {
             Self::Camera => 5,
@@ -65,12 +64,10 @@ impl<T: Scalar> Job<T> for SampleNumbers<'_> {
     fn run<L: Lanes<Scalar = T>>(self, l: L) -> Vec<[f64; 5]> {
         let mut all = Vec::with_capacity(self.samples.len());
         for samples in self.samples.chunks(L::COUNT) {
-            let [x, y, replicate, index] = columns_of(samples);
-            let [x, y] = [l.load_int(&x), l.load_int(&y)];
-            let [replicate, index] = [l.load_int(&replicate), l.load_int(&index)];
+            let [x, y, replicate, index] = columns_of(samples).map(|column| l.load_int(&column));
             let mut id = self.sequence.identity(l, x, y, replicate, index);
             let zero = l.real(0.0);
-            let [a, b, c, d, e] = match self.numbers {
+            let numbers = match self.numbers {
                 Numbers::Camera => {
                     let sample = self.sequence.camera(l, id, true);
                     let ([u, v], [s, t]) = (sample.pixel, sample.lens);
@@ -87,13 +84,7 @@ impl<T: Scalar> Job<T> for SampleNumbers<'_> {
                     [u, zero, zero, zero, zero]
                 }
             };
-            let columns = [
-                array(l, a),
-                array(l, b),
-                array(l, c),
-                array(l, d),
-                array(l, e),
-            ];
+            let columns = numbers.map(|x| array(l, x));
             all.extend((0..samples.len()).map(|i| columns.map(|column| column[i].to_f64())));
         }
         all
@@ -140,8 +131,7 @@ impl<T: Scalar> Job<T> for Shuffled<'_> {
         let Self(shuffle, words) = self;
         let mut all = Vec::with_capacity(words.len());
         for words in words.chunks(L::COUNT) {
-            let [x, seed] = columns_of(words);
-            let (x, seed) = (l.load_int(&x), l.load_int(&seed));
+            let [x, seed] = columns_of(words).map(|column| l.load_int(&column));
             let image = match shuffle {
                 Shuffle::Scramble => nested_scramble(l, x, seed),
                 Shuffle::Permutation(count) => permute(l, x, count, seed),

@@ -13,14 +13,12 @@ use etalon_lanes::shape::{Hit, Placed, Ray, ShapeKind};
 
 use crate::columns::{load_rays, vector};
 
-/// One ray's answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaySpan {
     /// The ray as it was rounded.
     pub ray: Ray,
-    /// Bounds of the entry.
+    /// Bounds of the entry and of the exit.
     pub near: [f64; 2],
-    /// Bounds of the exit.
     pub far: [f64; 2],
     /// Whether the shape is surely met.
     pub hit: bool,

@@ -7,20 +7,15 @@ use etalon::inside::math::affine::Affine;
 use etalon::inside::shape::{Placed, Ray, ShapeKind, Start, Tally};
 use etalon_doors::shapes::crossings;
 use glam::{DMat3, DVec3};
-use serde_json::Value;
 
+use super::agree;
 use super::harness::Case;
 use super::scenes::Text;
-use super::{agree, number, numbers, truth};
+use crate::truth_file::{Truth, list, number, numbers, truth, vector};
 
 pub fn cases() -> Vec<Case> {
     let families = [lens_edge(), sphere_area(), ellipsoid()];
     families.into_iter().flatten().collect()
-}
-
-fn vector(value: &Value) -> DVec3 {
-    let list = numbers(value);
-    DVec3::new(list[0], list[1], list[2])
 }
 
 /// Columns of the picture; the circle of confusion is [`BLUR`] of them wide.
@@ -29,10 +24,9 @@ const BLUR: f64 = 60_000.0;
 
 fn lens_edge() -> Vec<Case> {
     let t = truth("thin_lens_edge");
-    let of = |key: &str| number(&t["setup"][key]);
-    let (d, focus, s, le) = (of("D"), of("s_f"), of("s"), of("Le"));
+    let [d, focus, s, le] = t.all(["D", "s_f", "s", "Le"]);
     let blur = d * (s - focus).abs() / s;
-    agree(blur, number(&t["exact"]["c_f"]));
+    agree(blur, t.exact("c_f"));
     let profile = |u: f64| le * (0.5 + (u * (1.0 - u * u).sqrt() + u.asin()) / PI);
     let pixel = blur / BLUR;
     let rows = 8;
@@ -59,12 +53,8 @@ fn lens_edge() -> Vec<Case> {
                 x1: x0 + 8,
                 y1: rows,
             };
-            Case::new(
-                format!("thin_lens_edge u = {u}"),
-                scene.clone(),
-                profile(own),
-            )
-            .window(window)
+            let name = format!("thin_lens_edge u = {u}");
+            Case::new(name, scene.clone(), profile(own)).window(window)
         })
         .collect()
 }
@@ -72,14 +62,14 @@ fn lens_edge() -> Vec<Case> {
 fn sphere_area() -> Vec<Case> {
     let t = truth("perspective_sphere_area");
     let setup = &t["setup"];
-    let (r, fov) = (number(&setup["r"]), number(&setup["fov_deg"]));
+    let [r, fov] = t.all(["r", "fov_deg"]);
     let centre = vector(&setup["centre"]);
     let sine2 = r * r / centre.length_squared();
     let cosine2 = (centre.z / centre.length()).powi(2);
     let major = (sine2 * (1.0 - sine2)).sqrt() / (cosine2 - sine2);
     let minor = (sine2 / (cosine2 - sine2)).sqrt();
     let half = (fov / 2.0).to_radians().tan();
-    let exact = number(&t["exact"]["fraction"]);
+    let exact = t.exact("fraction");
     agree(PI * major * minor / (4.0 * half * half), exact);
     let scene = Text::perspective(DVec3::ZERO, DVec3::Z, fov)
         .size([32, 32])
@@ -89,14 +79,9 @@ fn sphere_area() -> Vec<Case> {
 }
 
 /// The matrix and the direction that it is seen along.
-fn sheared() -> (Value, DMat3, DVec3) {
+fn sheared() -> (Truth, DMat3, DVec3) {
     let t = truth("sheared_ellipsoid");
-    let rows: Vec<DVec3> = t["setup"]["M"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(vector)
-        .collect();
+    let rows: Vec<DVec3> = list(&t["setup"]["M"]).iter().map(vector).collect();
     let matrix = DMat3::from_cols(rows[0], rows[1], rows[2]).transpose();
     let u = vector(&t["setup"]["u"]);
     (t, matrix, u)
@@ -105,11 +90,9 @@ fn sheared() -> (Value, DMat3, DVec3) {
 fn ellipsoid() -> Vec<Case> {
     let (t, matrix, u) = sheared();
     let u = u.normalize();
-    let area = number(&t["exact"]["silhouette_area"]);
-    agree(
-        PI * matrix.determinant().abs() * (matrix.inverse() * u).length(),
-        area,
-    );
+    let area = t.exact("silhouette_area");
+    let shrunk = (matrix.inverse() * u).length();
+    agree(PI * matrix.determinant().abs() * shrunk, area);
     let columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
     let reach = columns.iter().map(|c| c.length()).sum::<f64>();
     let height = 2.0 * reach;
@@ -125,7 +108,7 @@ fn ellipsoid() -> Vec<Case> {
         .material("body", "diffuse = 1")
         .placed("sphere = {}", "body", columns, DVec3::ZERO)
         .directional(-u, PI);
-    let cosine = number(&t["exact"]["mean_cos"]);
+    let cosine = t.exact("mean_cos");
     vec![
         Case::new("sheared_ellipsoid silhouette", lamp, area).mapped(0.0, whole),
         Case::new("sheared_ellipsoid mean cosine", lit, cosine).mapped(0.0, whole / area),
@@ -163,9 +146,8 @@ fn a_sheared_sphere_is_hit_where_and_how_it_must() {
 #[test]
 fn spheres_are_hit_far_away_and_near_the_limb() {
     let t = truth("far_grazing_sphere");
-    for row in t["exact"]["rows"].as_array().unwrap() {
-        let of = |key: &str| number(&row[key]);
-        let (r, b, d, exact) = (of("r"), of("b"), of("D"), of("t"));
+    for row in t.rows("rows") {
+        let [r, b, d, exact] = ["r", "b", "D", "t"].map(|key| number(&row[key]));
         agree(d - (r * r - b * b).sqrt(), exact);
         let placed = Placed::new(ShapeKind::Sphere, &Affine::scale(DVec3::splat(r))).unwrap();
         let ray = Ray {

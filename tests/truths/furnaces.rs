@@ -5,10 +5,11 @@ use std::f64::consts::PI;
 use etalon::inside::spectrum::ior::named_glass;
 use glam::DVec3;
 
+use super::agree;
 use super::glass::{fresnel_dielectric, over_wavelengths};
 use super::harness::Case;
-use super::scenes::{Text, n};
-use super::{agree, number, numbers, truth};
+use super::scenes::Text;
+use crate::truth_file::{number, numbers, truth};
 
 pub fn cases() -> Vec<Case> {
     let families = [
@@ -45,27 +46,21 @@ pub fn fresnel_conductor(cosine: f64, n: f64, k: f64) -> f64 {
 
 fn closed() -> Vec<Case> {
     let t = truth("furnace_closed");
-    let (rho, le) = (number(&t["setup"]["rho"]), number(&t["setup"]["Le"]));
-    let whole = number(&t["exact"]["L"]);
+    let [rho, le] = t.all(["rho", "Le"]);
+    let whole = t.exact("L");
     agree(le / (1.0 - rho), whole);
     let scene = |shape: &str, sides: &str| {
         let from = DVec3::new(0.3, 0.2, -0.1);
         Text::perspective(from, DVec3::new(0.2, 0.5, 0.8), 90.0)
-            .material(
-                "wall",
-                &format!("diffuse = {rho:?}, emit = {le:?}, sides = \"{sides}\""),
-            )
+            .material("wall", &emitting(rho, le, sides))
             .object(shape, "wall")
     };
     let both = scene("sphere = {}", "both");
     let mut cases = vec![Case::new("furnace_closed sphere both", both, whole)];
     for shape in ["sphere", "cube", "cylinder"] {
         let scene = scene(&format!("{shape} = {{}}"), "back");
-        cases.push(Case::new(
-            format!("furnace_closed {shape}"),
-            scene.clone(),
-            whole,
-        ));
+        let name = format!("furnace_closed {shape}");
+        cases.push(Case::new(name, scene.clone(), whole));
         let limited = numbers(&t["exact"]["L_m"]);
         for (m, limited) in numbers(&t["setup"]["m"]).into_iter().zip(limited) {
             agree(le * (1.0 - rho.powf(m + 1.0)) / (1.0 - rho), limited);
@@ -79,11 +74,8 @@ fn closed() -> Vec<Case> {
 
 fn open_diffuse() -> Vec<Case> {
     let t = truth("furnace_open_diffuse");
-    let (rho, lenv) = (number(&t["setup"]["rho"]), number(&t["setup"]["Lenv"]));
-    let (convex, white) = (
-        number(&t["exact"]["L_convex"]),
-        number(&t["exact"]["L_white"]),
-    );
+    let [rho, lenv] = t.all(["rho", "Lenv"]);
+    let (convex, white) = (t.exact("L_convex"), t.exact("L_white"));
     agree(rho * lenv, convex);
     let from = DVec3::new(3.0, 4.0, 5.0);
     let scene = |albedo: f64, height: f64| {
@@ -115,7 +107,7 @@ fn ways_out(r: f64, exits: f64) -> f64 {
 fn glass() -> Vec<Case> {
     let t = truth("furnace_glass");
     let setup = &t["setup"];
-    let (lenv, theta) = (number(&setup["Lenv"]), number(&setup["theta_deg"]));
+    let [lenv, theta] = t.all(["Lenv", "theta_deg"]);
     let name = setup["glass"].as_str().unwrap();
     let index = named_glass(name).unwrap();
     let theta = theta.to_radians();
@@ -135,18 +127,14 @@ fn glass() -> Vec<Case> {
             .environment(lenv)
     };
     let mut cases = Vec::new();
-    for row in t["exact"]["per_wavelength"].as_array().unwrap() {
+    for row in t.rows("per_wavelength") {
         let (nm, ior) = (number(&row["nm"]), number(&row["n"]));
         agree(index.n(nm), ior);
         let r = fresnel_dielectric(theta.cos(), ior);
         agree(r, number(&row["R_unpolarised"]));
         let glass = format!("{{ ior = {ior:?} }}");
-        let l = number(&row["L"]);
-        cases.push(Case::new(
-            format!("furnace_glass {nm} nm"),
-            whole(&glass),
-            l,
-        ));
+        let name = format!("furnace_glass {nm} nm");
+        cases.push(Case::new(name, whole(&glass), number(&row["L"])));
         let limited = numbers(&row["L_depth"]);
         for (e, limited) in exits.iter().zip(limited) {
             agree(lenv * ways_out(r, *e), limited);
@@ -162,9 +150,8 @@ fn glass() -> Vec<Case> {
         cases.push(Case::new(name, whole(&glass), flat).channel(channel));
     }
     for e in &exits {
-        let limited = over_wavelengths(|nm| {
-            lenv * ways_out(fresnel_dielectric(theta.cos(), index.n(nm)), *e)
-        });
+        let out = |nm| lenv * ways_out(fresnel_dielectric(theta.cos(), index.n(nm)), *e);
+        let limited = over_wavelengths(out);
         let scene = spot(&glass).depth(*e as u32 + 2);
         let name = format!("furnace_glass dispersive, {e} exits");
         cases.push(Case::new(name, scene, limited[1]));
@@ -175,8 +162,8 @@ fn glass() -> Vec<Case> {
 fn metal_sphere() -> Vec<Case> {
     let t = truth("furnace_metal_mirror_sphere");
     let setup = &t["setup"];
-    let (index, k) = (number(&setup["n"]), number(&setup["k"]));
-    let lenv = number(&setup["Lenv"]);
+    let [index, k] = t.all(["n", "k"]);
+    let lenv = t.of("Lenv");
     let scene = |x: f64, height: f64| {
         Text::orthographic(DVec3::new(x, 0.0, 3.0), -DVec3::Z, height)
             .material("metal", &format!("mirror = {{ n = {index:?}, k = {k:?} }}"))
@@ -193,7 +180,7 @@ fn metal_sphere() -> Vec<Case> {
         let name = format!("furnace_metal_mirror_sphere {degrees}°");
         cases.push(Case::new(name, scene, exact));
     }
-    let exact = number(&t["exact"]["L_disc_mean"]);
+    let exact = t.exact("L_disc_mean");
     let scene = scene(0.0, 2.0).size([16, 16]);
     let around = lenv * (1.0 - PI / 4.0);
     let case = Case::new("furnace_metal_mirror_sphere disc", scene, exact);
@@ -203,26 +190,18 @@ fn metal_sphere() -> Vec<Case> {
 
 fn mirror_sphere_interior() -> Vec<Case> {
     let t = truth("mirror_sphere_interior");
-    let setup = &t["setup"];
-    let of = |key: &str| number(&setup[key]);
-    let (index, k, r, a, le, m) = (of("n"), of("k"), of("r"), of("a"), of("Le"), of("m"));
+    let [index, k, r, a, le, m] = t.all(["n", "k", "r", "a", "Le", "m"]);
     let mut cases = Vec::new();
-    for row in t["exact"]["per_direction"].as_array().unwrap() {
+    for row in t.rows("per_direction") {
         let degrees = number(&row["psi_deg"]);
         let (sine, cosine) = degrees.to_radians().sin_cos();
         let incidence = (1.0 - (a / r * sine).powi(2)).sqrt();
         let reflectance = fresnel_conductor(incidence, index, k);
         agree(le / (1.0 - reflectance), number(&row["L"]));
-        let scene = Text::orthographic(
-            DVec3::new(0.0, 0.0, a),
-            DVec3::new(sine, 0.0, cosine),
-            1e-4 * r,
-        )
-        .material(
-            "wall",
-            &format!("mirror = {{ n = {index:?}, k = {k:?} }}, emit = {le:?}, sides = \"back\""),
-        )
-        .sphere("wall", r, DVec3::ZERO);
+        let metal = format!("mirror = {{ n = {index:?}, k = {k:?} }}");
+        let scene = Text::orthographic(a * DVec3::Z, DVec3::new(sine, 0.0, cosine), 1e-4 * r)
+            .material("wall", &format!("{metal}, emit = {le:?}, sides = \"back\""))
+            .sphere("wall", r, DVec3::ZERO);
         let name = format!("mirror_sphere_interior {degrees}°");
         let limited = scene.clone().depth(m as u32 + 1);
         cases.push(Case::new(name.clone(), scene, number(&row["L"])));
@@ -234,15 +213,10 @@ fn mirror_sphere_interior() -> Vec<Case> {
 
 fn integrating_sphere() -> Vec<Case> {
     let t = truth("integrating_sphere");
-    let setup = &t["setup"];
-    let (r, rho, intensity) = (
-        number(&setup["r"]),
-        number(&setup["rho"]),
-        number(&setup["I"]),
-    );
-    let half_angle = number(&setup["port_half_angle_deg"]).to_radians();
+    let [r, rho, intensity] = t.all(["r", "rho", "I"]);
+    let half_angle = t.of("port_half_angle_deg").to_radians();
     let port = (1.0 - half_angle.cos()) / 2.0;
-    let wall = number(&t["exact"]["L_wall"]);
+    let wall = t.exact("L_wall");
     let once = rho * intensity / (PI * r * r);
     agree(once / (1.0 - rho * (1.0 - port)), wall);
     // The port is a black disk across its chord; its rim may stand out of the sphere.
@@ -255,7 +229,7 @@ fn integrating_sphere() -> Vec<Case> {
             "port",
             1.01 * r * half_angle.sin(),
             DVec3::Z,
-            DVec3::new(0.0, 0.0, height),
+            height * DVec3::Z,
         )
         .point_light(DVec3::ZERO, intensity);
     let mut cases = vec![Case::new("integrating_sphere", scene.clone(), wall)];
@@ -269,10 +243,8 @@ fn integrating_sphere() -> Vec<Case> {
 
 fn off_centre_light() -> Vec<Case> {
     let t = truth("sphere_off_centre_light");
-    let setup = &t["setup"];
-    let of = |key: &str| number(&setup[key]);
-    let (r, c, intensity, rho) = (of("r"), of("c"), of("I"), of("rho"));
-    let rows = t["exact"]["per_point"].as_array().unwrap();
+    let [r, c, intensity, rho] = t.all(["r", "c", "I", "rho"]);
+    let rows = t.rows("per_point");
     rows.iter()
         .map(|row| {
             let degrees = number(&row["psi_deg"]);
@@ -302,56 +274,40 @@ pub fn two_bodies(ratio: f64, rho: [f64; 2], le: [f64; 2]) -> [f64; 2] {
     [le[0] + rho[0] * outer, outer]
 }
 
+/// A diffuse surface that emits.
+fn emitting(rho: f64, le: f64, sides: &str) -> String {
+    format!("diffuse = {rho:?}, emit = {le:?}, sides = \"{sides}\"")
+}
+
 /// A view from between two concentric spheres, inward or outward.
 pub fn between(r: [f64; 2], rho: [f64; 2], le: [f64; 2], inward: bool) -> Text {
     let out = DVec3::new(0.6, 0.0, 0.8);
     let towards = if inward { -out } else { out };
     let from = out * ((r[0] + r[1]) / 2.0);
     Text::perspective(from, towards, 20.0)
-        .material(
-            "inner",
-            &format!("diffuse = {}, emit = {}", n(rho[0]), n(le[0])),
-        )
-        .material(
-            "outer",
-            &format!(
-                "diffuse = {}, emit = {}, sides = \"back\"",
-                n(rho[1]),
-                n(le[1])
-            ),
-        )
+        .material("inner", &emitting(rho[0], le[0], "front"))
+        .material("outer", &emitting(rho[1], le[1], "back"))
         .sphere("inner", r[0], DVec3::ZERO)
         .sphere("outer", r[1], DVec3::ZERO)
 }
 
 fn concentric_spheres() -> Vec<Case> {
     let t = truth("concentric_spheres");
-    let of = |key: &str| number(&t["setup"][key]);
-    let (r, rho, le) = (
-        [of("r1"), of("r2")],
-        [of("rho1"), of("rho2")],
-        [of("Le1"), of("Le2")],
-    );
-    let exact = ["L_inner", "L_outer"].map(|key| number(&t["exact"][key]));
+    let [r, rho, le] = ["r", "rho", "Le"].map(|key| [1, 2].map(|i| t.of(&format!("{key}{i}"))));
+    let exact = ["L_inner", "L_outer"].map(|key| t.exact(key));
     let own = two_bodies(r[0] / r[1], rho, le);
-    [true, false]
-        .into_iter()
-        .zip(exact)
-        .zip(own)
-        .map(|((inward, exact), own)| {
-            agree(own, exact);
-            let side = if inward { "inner" } else { "outer" };
-            let scene = between(r, rho, le, inward);
-            Case::new(format!("concentric_spheres {side}"), scene, exact)
-        })
-        .collect()
+    let case = |i: usize| {
+        agree(own[i], exact[i]);
+        let name = format!("concentric_spheres {}", ["inner", "outer"][i]);
+        Case::new(name, between(r, rho, le, i == 0), exact[i])
+    };
+    [0, 1].map(case).into()
 }
 
 fn parallel_plates() -> Vec<Case> {
     let t = truth("parallel_plates");
-    let of = |key: &str| number(&t["setup"][key]);
-    let (rho, le) = ([of("rho1"), of("rho2")], [of("Le1"), of("Le2")]);
-    let exact = ["L1", "L2"].map(|key| number(&t["exact"][key]));
+    let (rho, le) = (t.all(["rho1", "rho2"]), t.all(["Le1", "Le2"]));
+    let exact = ["L1", "L2"].map(|key| t.exact(key));
     let mut cases = Vec::new();
     // Plates without end, and squares whose side is 5000 times their distance: (2 g/s)² = 1.6e-7.
     for (shape, size) in [("plane", 1.0), ("rectangle", 2500.0)] {
@@ -359,17 +315,8 @@ fn parallel_plates() -> Vec<Case> {
             let towards = if below { -DVec3::Z } else { DVec3::Z };
             let axes = [size * DVec3::X, size * DVec3::Y, DVec3::Z];
             let scene = Text::orthographic(DVec3::new(0.0, 0.0, 0.5), towards, 0.1)
-                .material(
-                    "lower",
-                    &format!("diffuse = {:?}, emit = {:?}", rho[0], le[0]),
-                )
-                .material(
-                    "upper",
-                    &format!(
-                        "diffuse = {:?}, emit = {:?}, sides = \"back\"",
-                        rho[1], le[1]
-                    ),
-                )
+                .material("lower", &emitting(rho[0], le[0], "front"))
+                .material("upper", &emitting(rho[1], le[1], "back"))
                 .placed(&format!("{shape} = {{}}"), "lower", axes, DVec3::ZERO)
                 .placed(&format!("{shape} = {{}}"), "upper", axes, DVec3::Z);
             let (i, j) = if below { (0, 1) } else { (1, 0) };
@@ -383,10 +330,9 @@ fn parallel_plates() -> Vec<Case> {
 
 fn facing_mirrors() -> Vec<Case> {
     let t = truth("facing_mirrors");
-    let of = |key: &str| number(&t["setup"][key]);
-    let (index, k, le) = (of("n"), of("k"), of("Le"));
-    let theta = of("theta_deg").to_radians();
-    let r = number(&t["exact"]["R"]);
+    let [index, k, le] = t.all(["n", "k", "Le"]);
+    let theta = t.of("theta_deg").to_radians();
+    let r = t.exact("R");
     agree(fresnel_conductor(theta.cos(), index, k), r);
     let metal = format!("mirror = {{ n = {index:?}, k = {k:?} }}");
     let from = DVec3::new(0.0, 0.0, 0.5);
@@ -409,8 +355,7 @@ fn facing_mirrors() -> Vec<Case> {
             .environment(le);
         cases.push(Case::new(format!("facing_mirrors j = {j}"), scene, exact));
     }
-    let exact = number(&t["exact"]["L_emitting"]);
-    let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+    let exact = t.exact("L_emitting");
     let scene = look
         .material("lower", &format!("{metal}, emit = {le:?}"))
         .material(
@@ -418,7 +363,7 @@ fn facing_mirrors() -> Vec<Case> {
             &format!("{metal}, emit = {le:?}, sides = \"back\""),
         )
         .object("plane = {}", "lower")
-        .placed("plane = {}", "upper", axes, DVec3::Z);
+        .placed("plane = {}", "upper", DVec3::AXES, DVec3::Z);
     cases.push(Case::new("facing_mirrors emitting", scene, exact));
     cases
 }

@@ -7,9 +7,10 @@ use etalon::inside::spectrum::observer::{Y_INTEGRAL, xyz_bar};
 use etalon::inside::spectrum::{NM_MAX, NM_MIN};
 use glam::{DVec2, DVec3};
 
+use super::agree;
 use super::harness::Case;
 use super::scenes::Text;
-use super::{agree, number, numbers, truth};
+use crate::truth_file::{number, numbers, truth};
 
 pub fn cases() -> Vec<Case> {
     let families = [slab(), slab_shift(), prism(), rainbow(), coated_diffuse()];
@@ -43,7 +44,6 @@ pub fn until(end: f64, radiance: impl Fn(f64) -> f64) -> [f64; 3] {
     sum
 }
 
-/// X, Y, Z of a spectrum.
 pub fn over_wavelengths(radiance: impl Fn(f64) -> f64) -> [f64; 3] {
     until(NM_MAX, radiance)
 }
@@ -64,22 +64,22 @@ fn slab() -> Vec<Case> {
             .object("cube = { size = [100.0, 100.0, 0.01] }", "glass")
             .rectangle("lamp", 40.0 * DVec3::X, 40.0 * DVec3::Y, lamp * DVec3::Z)
     };
+    let through = |r: f64| (1.0 - r) / (1.0 + r);
     let mut cases = Vec::new();
-    for row in t["exact"]["rows"].as_array().unwrap() {
+    for row in t.rows("rows") {
         let (nm, ior) = (number(&row["nm"]), number(&row["n"]));
         let degrees = number(&row["theta_deg"]);
         let theta = degrees.to_radians();
         agree(index.n(nm), ior);
         let r = fresnel_dielectric(theta.cos(), ior);
         agree(r, number(&row["R"]));
-        agree((1.0 - r) / (1.0 + r), number(&row["T_scalar"]));
+        agree(through(r), number(&row["T_scalar"]));
         let glass = format!("{{ ior = {ior:?} }}");
-        let through = scene(&glass, theta, -0.1);
-        let back = scene(&glass, theta, 0.3);
+        let below = scene(&glass, theta, -0.1);
         for (key, scene) in [
-            ("T_scalar", through.clone()),
-            ("R_scalar", back),
-            ("T1", through.depth(3)),
+            ("T_scalar", below.clone()),
+            ("R_scalar", scene(&glass, theta, 0.3)),
+            ("T1", below.depth(3)),
         ] {
             let name = format!("slab {nm} nm {degrees}° {key}");
             cases.push(Case::new(name, scene, number(&row[key])));
@@ -88,10 +88,7 @@ fn slab() -> Vec<Case> {
     let glass = format!("\"{name}\"");
     for degrees in numbers(&t["setup"]["theta_deg"]) {
         let theta = degrees.to_radians();
-        let exact = over_wavelengths(|nm| {
-            let r = fresnel_dielectric(theta.cos(), index.n(nm));
-            (1.0 - r) / (1.0 + r)
-        });
+        let exact = over_wavelengths(|nm| through(fresnel_dielectric(theta.cos(), index.n(nm))));
         let name = format!("slab dispersive {degrees}°");
         cases.push(Case::new(name, scene(&glass, theta, -0.1), exact[1]));
     }
@@ -102,7 +99,7 @@ fn slab() -> Vec<Case> {
 /// width w that arrives δ' instead of δ aside lights ½ + (δ' − δ)/w.
 fn slab_shift() -> Vec<Case> {
     let t = truth("slab_shift");
-    let (ior, thickness) = (number(&t["setup"]["n"]), number(&t["setup"]["t"]));
+    let [ior, thickness] = t.all(["n", "t"]);
     let angles = numbers(&t["setup"]["theta_deg"]);
     let shifts = numbers(&t["exact"]["delta"]);
     angles
@@ -110,30 +107,21 @@ fn slab_shift() -> Vec<Case> {
         .zip(shifts)
         .map(|(degrees, shift)| {
             let (sine, cosine) = degrees.to_radians().sin_cos();
-            agree(
-                thickness * sine * (1.0 - cosine / (ior * ior - sine * sine).sqrt()),
-                shift,
-            );
+            let inside = (ior * ior - sine * sine).sqrt();
+            agree(thickness * sine * (1.0 - cosine / inside), shift);
             let towards = DVec3::new(sine, 0.0, -cosine);
             let aside = DVec3::new(-cosine, 0.0, -sine);
             let size = 0.05 * thickness;
             let edge = towards * (2.0 * thickness / cosine + thickness) + aside * shift;
             let width = 1e-3 * shift;
+            let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+            let slab = [100.0 * thickness * x, thickness * y, thickness / 2.0 * z];
             let scene = Text::orthographic(-towards * (0.1 * thickness), towards, width)
                 .depth(3)
                 .double()
                 .material("glass", &format!("glass = {{ ior = {ior:?} }}"))
                 .material("lamp", "emit = 1, sides = \"both\"")
-                .placed(
-                    "cube = {}",
-                    "glass",
-                    [
-                        100.0 * thickness * DVec3::X,
-                        thickness * DVec3::Y,
-                        thickness / 2.0 * DVec3::Z,
-                    ],
-                    -thickness / 2.0 * DVec3::Z,
-                )
+                .block("glass", slab, -slab[2])
                 .rectangle("lamp", size * aside, size * DVec3::Y, edge + size * aside);
             let r = fresnel_dielectric(cosine, ior);
             let through = (1.0 - r).powi(2);
@@ -206,23 +194,14 @@ impl Prism {
         let aside = space(DVec2::new(ray.towards.y, -ray.towards.x));
         let edge = space(ray.exit + far * ray.towards);
         let [a, b] = self.faces.map(space);
+        let half = size / 2.0 * aside;
         Text::upright(space(entry - towards), space(towards), DVec3::Y, width)
             .depth(3)
             .double()
             .material("glass", &format!("glass = {glass}"))
             .material("lamp", "emit = 1, sides = \"both\"")
-            .placed(
-                "cube = {}",
-                "glass",
-                [0.5 * a, DVec3::Y, 0.5 * b],
-                0.5 * (a + b),
-            )
-            .rectangle(
-                "lamp",
-                size / 2.0 * aside,
-                size * DVec3::Y,
-                edge + size / 2.0 * aside,
-            )
+            .block("glass", [0.5 * a, DVec3::Y, 0.5 * b], 0.5 * (a + b))
+            .rectangle("lamp", half, size * DVec3::Y, edge + half)
     }
 }
 
@@ -231,10 +210,10 @@ fn prism() -> Vec<Case> {
     let setup = &t["setup"];
     let name = setup["glass"].as_str().unwrap();
     let index = named_glass(name).unwrap();
-    let prism = Prism::new(number(&setup["apex_deg"]).to_radians());
-    let incidence = number(&setup["i_deg"]);
+    let prism = Prism::new(t.of("apex_deg").to_radians());
+    let incidence = t.of("i_deg");
     let mut cases = Vec::new();
-    for row in t["exact"]["rows"].as_array().unwrap() {
+    for row in t.rows("rows") {
         let (nm, ior) = (number(&row["nm"]), number(&row["n"]));
         agree(index.n(nm), ior);
         let minimum = number(&row["i_min_deg"]);
@@ -251,16 +230,14 @@ fn prism() -> Vec<Case> {
             // Degrees at the lamp's distance over the width of the beam.
             let spread = (ray.widening * width / far).to_degrees();
             let name = format!("prism {nm} nm {key}");
-            let case = Case::new(name, scene, exact).mapped(
-                (exact / spread - 0.5) * ray.transmittance,
-                spread / ray.transmittance,
-            );
-            cases.push(case);
+            let offset = (exact / spread - 0.5) * ray.transmittance;
+            let case = Case::new(name, scene, exact);
+            cases.push(case.mapped(offset, spread / ray.transmittance));
         }
     }
     // With dispersion: shorter wavelengths than the one that the lamp begins at find it.
     let i = incidence.to_radians();
-    for row in t["exact"]["rows"].as_array().unwrap() {
+    for row in t.rows("rows") {
         let (nm, ior) = (number(&row["nm"]), number(&row["n"]));
         let scene = prism.scene(&format!("\"{name}\""), i, ior, 1e-6, [50.0, 30.0]);
         let lit = until(nm, |nm| prism.trace(i, index.n(nm)).transmittance);
@@ -293,14 +270,13 @@ fn bow(x: f64, ior: f64) -> BowRay {
     let entry = DVec2::new(x, -(1.0 - x * x).sqrt());
     let exit = turned(2.0 * (PI - 2.0 * r), entry);
     let towards = turned(2.0 * (i - r) + PI - 2.0 * r, DVec2::Y);
-    let (outer, inner) = (
-        fresnel_dielectric(i.cos(), ior),
-        fresnel_dielectric(r.cos(), 1.0 / ior),
-    );
+    let outer = fresnel_dielectric(i.cos(), ior);
+    let inner = fresnel_dielectric(r.cos(), 1.0 / ior);
+    let weight = (1.0 - outer) * inner * (1.0 - inner);
     BowRay {
         exit,
         towards,
-        weight: (1.0 - outer) * inner * (1.0 - inner),
+        weight,
     }
 }
 
@@ -347,7 +323,7 @@ pub fn bow_scene(glass: &str, x: f64, lamp: [f64; 2]) -> Text {
     let lamp = BowLamp::new(lamp[0], lamp[1]);
     let space = |p: DVec2| DVec3::new(p.x, 0.0, p.y);
     let from = DVec3::new(x, 0.0, -2.0);
-    let row = f64::from(ROW);
+    let (row, along) = (f64::from(ROW), lamp.half * space(lamp.along));
     Text::upright(from, DVec3::Z, DVec3::Y, BOW_WIDTH / row)
         .size([ROW, 1])
         .depth(4)
@@ -355,12 +331,7 @@ pub fn bow_scene(glass: &str, x: f64, lamp: [f64; 2]) -> Text {
         .material("glass", &format!("glass = {glass}"))
         .material("lamp", "emit = 1, sides = \"both\"")
         .object("sphere = {}", "glass")
-        .rectangle(
-            "lamp",
-            lamp.half * space(lamp.along),
-            FAR * DVec3::Y,
-            space(lamp.centre),
-        )
+        .rectangle("lamp", along, FAR * DVec3::Y, space(lamp.centre))
 }
 
 /// Incidence and deviation of the bow (Descartes).
@@ -407,7 +378,7 @@ fn rainbow() -> Vec<Case> {
         panic!()
     };
     let mut cases = Vec::new();
-    for row in t["exact"]["rows"].as_array().unwrap() {
+    for row in t.rows("rows") {
         let (nm, ior) = (number(&row["nm"]), number(&row["n"]));
         agree(a + b / (nm / 1000.0).powi(2), ior);
         let (i, deviation) = descartes(ior);
@@ -419,14 +390,10 @@ fn rainbow() -> Vec<Case> {
         let plain = |[from, to]: [f64; 2]| bow_mean(ior, x, &BowLamp::new(from, to), 200_000);
         let dispersed =
             |[from, to]: [f64; 2]| dispersed_bow_mean([a, b], x, &BowLamp::new(from, to));
+        let cauchy = format!("{{ cauchy = [{a:?}, {b:?}] }}");
         let kinds: [(&str, String, f64, &BowMean<'_>); 2] = [
             ("", format!("{{ ior = {ior:?} }}"), 5e-5, &plain),
-            (
-                " dispersive",
-                format!("{{ cauchy = [{a:?}, {b:?}] }}"),
-                2e-4,
-                &dispersed,
-            ),
+            (" dispersive", cauchy, 2e-4, &dispersed),
         ];
         for (kind, glass, wanted, expected) in kinds {
             // Moving the lamp's end by ±h moves the mean as moving D by ∓h does.
@@ -449,9 +416,8 @@ fn rainbow() -> Vec<Case> {
 
 fn coated_diffuse() -> Vec<Case> {
     let t = truth("coated_diffuse");
-    let of = |key: &str| number(&t["setup"][key]);
-    let (ior, rho, lenv) = (of("n"), of("rho"), of("Lenv"));
-    let (outer, inner) = (number(&t["exact"]["r_e"]), number(&t["exact"]["r_i"]));
+    let [ior, rho, lenv] = t.all(["n", "rho", "Lenv"]);
+    let (outer, inner) = (t.exact("r_e"), t.exact("r_i"));
     agree(1.0 - (1.0 - outer) / (ior * ior), inner);
     // 4000 times as wide as high: light that leaves the base farther out than that by its first
     // way up and down is (1/4000)² of it.
@@ -463,12 +429,7 @@ fn coated_diffuse() -> Vec<Case> {
             .double()
             .material("glass", &format!("glass = {{ ior = {ior:?} }}"))
             .material("base", &format!("diffuse = {rho:?}"))
-            .placed(
-                "cube = {}",
-                "glass",
-                [2000.0 * x, 2000.0 * y, 0.5 * z],
-                0.5 * z,
-            )
+            .block("glass", [2000.0 * x, 2000.0 * y, 0.5 * z], 0.5 * z)
             .rectangle("base", 1999.0 * x, 1999.0 * y, 1e-3 * z)
             .environment(lenv)
     };

@@ -1,11 +1,8 @@
 //! Measuring numbers in pictures, and judging them.
 
-use std::path::Path;
-
 use etalon::inside::render::session::{Request, Unwatched, render as run};
-use etalon::inside::scene::parse;
 use etalon::inside::stats::student;
-use etalon::{Estimate, Overrides, Plan, Rendered, Window};
+use etalon::{Estimate, Plan, Rendered, Scene, Window};
 use rayon::prelude::*;
 
 use super::scenes::Text;
@@ -100,51 +97,32 @@ impl Case {
     }
 }
 
-/// An estimate with its standard error.
+/// What is measured, from so many camera samples.
 #[derive(Debug, Clone, Copy)]
 pub struct Measurement {
-    pub value: f64,
-    pub standard_error: f64,
-    /// Degrees of freedom of the standard error.
-    pub freedom: f64,
-    /// Camera samples.
+    pub estimate: Estimate,
     pub samples: u64,
 }
 
-impl Measurement {
-    /// Standard errors between estimate and truth.
-    pub fn score(&self, case: &Case) -> f64 {
-        (self.value - case.truth) / self.standard_error.max(f64::MIN_POSITIVE)
+impl Case {
+    /// What rounding and set-up explain of a difference from a truth.
+    fn explained(&self, truth: f64) -> f64 {
+        (ROUNDING + self.systematic) * truth.abs()
     }
 
-    /// Whether its confidence interval lies within [`CLOSE`] of the truth, less what rounding and set-up
-    /// explain.
-    fn is_close(&self, case: &Case) -> bool {
-        let explained = (ROUNDING + case.systematic) * case.truth.abs();
-        let distance = ((self.value - case.truth).abs() - explained).max(0.0);
-        let margin = student::critical(MISSED, self.freedom) * self.standard_error;
-        distance + margin <= CLOSE * case.truth.abs()
-    }
-
-    /// Two-sided p-value of a truth, less what rounding and set-up explain.
-    fn p_value(&self, truth: f64, case: &Case) -> f64 {
-        let explained = (ROUNDING + case.systematic) * truth.abs();
-        let distance = ((self.value - truth).abs() - explained).max(0.0);
-        if distance == 0.0 {
-            return 1.0;
-        }
-        if self.standard_error == 0.0 {
-            return 0.0;
-        }
-        student::two_sided(distance / self.standard_error, self.freedom)
+    /// Whether an estimate's confidence interval lies within [`CLOSE`] of the truth, less what is
+    /// explained.
+    fn is_close(&self, estimate: &Estimate) -> bool {
+        let distance = (estimate.value - self.truth).abs() - self.explained(self.truth);
+        let margin = student::critical(MISSED, estimate.freedom) * estimate.standard_error;
+        distance.max(0.0) + margin <= CLOSE * self.truth.abs()
     }
 }
 
 /// Renders a scene file; no sample may be anything but a number.
 pub fn render(text: &Text, spp: u32, seed: u64, window: Option<Window>) -> Rendered {
     let file = text.file(spp, seed);
-    let scene = parse("truth", &file, Path::new(""), &Overrides::default())
-        .unwrap_or_else(|error| panic!("{error}\n{file}"));
+    let scene = Scene::parse(&file).unwrap_or_else(|error| panic!("{error}\n{file}"));
     let plan = Plan::new(&scene, false).unwrap();
     let request = Request {
         window: window.unwrap_or(Window::whole(scene.image.size)),
@@ -163,7 +141,6 @@ pub fn mean(estimates: &[[f64; 2]], spp: u32) -> Estimate {
     Estimate::mean_of(&values, &variances, f64::from(replicates(spp) - 1))
 }
 
-/// Replicates of a pixel.
 pub fn replicates(spp: u32) -> u32 {
     if spp < PLENTY { 2 } else { 8 }
 }
@@ -176,12 +153,13 @@ fn measure_at(case: &Case, spp: u32, seed: u64) -> Measurement {
         .map(|e| [e.mean[case.channel], e.standard_error[case.channel]])
         .collect();
     let mean = mean(&estimates, spp);
-    Measurement {
+    let estimate = Estimate {
         value: (mean.value + case.offset) * case.factor,
         standard_error: mean.standard_error * case.factor.abs(),
-        freedom: mean.freedom,
-        samples: u64::from(spp) * estimates.len() as u64,
-    }
+        ..mean
+    };
+    let samples = u64::from(spp) * estimates.len() as u64;
+    Measurement { estimate, samples }
 }
 
 /// Measures with as many samples as pilots that are thrown away ask for, so that the count
@@ -196,7 +174,7 @@ fn measure(case: &Case, wanted: f64, seed: u64) -> Measurement {
     let mut spp = PILOT;
     for pilot in 0..2 {
         let m = measure_at(case, spp, seed + pilot);
-        let wanted = f64::from(spp) * (m.standard_error / goal).powf(2.0 / SLOPE);
+        let wanted = f64::from(spp) * (m.estimate.standard_error / goal).powf(2.0 / SLOPE);
         let last = pilot == 1 || wanted <= f64::from(16 * spp);
         spp = (wanted.clamp(f64::from(PILOT), most) as u32).next_power_of_two();
         if last {
@@ -207,7 +185,7 @@ fn measure(case: &Case, wanted: f64, seed: u64) -> Measurement {
     let mut round = 2;
     loop {
         let m = measure_at(case, spp, seed + round);
-        if m.standard_error <= SHARP * goal || round == LAST_ROUND || spp > 1 << 22 {
+        if m.estimate.standard_error <= SHARP * goal || round == LAST_ROUND || spp > 1 << 22 {
             return m;
         }
         spp *= 4;
@@ -236,13 +214,11 @@ fn what_is_off_or_hardly_known_is_not_close() {
     let text = Text::perspective(glam::DVec3::ZERO, glam::DVec3::Z, 40.0);
     let case = Case::new("one", text, 1.0);
     let is_close = |off: f64, standard_error: f64| {
-        let measurement = Measurement {
+        case.is_close(&Estimate {
             value: 1.0 + off,
             standard_error,
             freedom: 64.0,
-            samples: 1,
-        };
-        measurement.is_close(&case)
+        })
     };
     assert!(is_close(0.25 * CLOSE, 0.25 * CLOSE));
     assert!(!is_close(CLOSE, 0.05 * CLOSE) && !is_close(-CLOSE, 0.05 * CLOSE));
@@ -267,7 +243,7 @@ pub fn show(case: &Case, place: usize) -> Shown {
         round += 1;
         let seed = (u64::from(round) << 32) | (SEEDS_EACH * place as u64);
         let measurement = measure(case, wanted, seed);
-        let close = measurement.is_close(case);
+        let close = case.is_close(&measurement.estimate);
         if close || round == ROUNDS {
             return Shown {
                 measurement,
@@ -278,15 +254,19 @@ pub fn show(case: &Case, place: usize) -> Shown {
     }
 }
 
-/// The numbers that Holm's step-down procedure (Holm 1979) rejects.
-pub fn judge<'a>(numbers: impl Iterator<Item = (&'a Measurement, f64, &'a Case)>) -> Vec<String> {
+/// The numbers that Holm's step-down procedure (Holm 1979) rejects, their truths multiplied by `bias`.
+pub fn judge<'a>(
+    numbers: impl Iterator<Item = (&'a Case, &'a Measurement)>,
+    bias: f64,
+) -> Vec<String> {
     let all: Vec<(f64, String)> = numbers
-        .map(|(m, truth, case)| {
+        .map(|(case, m)| {
+            let (truth, estimate) = (bias * case.truth, m.estimate);
             let words = format!(
                 "{}: {} ± {} instead of {truth}",
-                case.name, m.value, m.standard_error
+                case.name, estimate.value, estimate.standard_error
             );
-            (m.p_value(truth, case), words)
+            (estimate.p_value(truth, case.explained(truth)), words)
         })
         .collect();
     holm(&all)

@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use serde_json::Value;
 
+use super::agree;
 use super::harness::Case;
 use super::scenes::Text;
-use super::{agree, number, numbers, truth};
+use crate::truth_file::{list, number, numbers, truth, vector};
 
 pub fn cases() -> Vec<Case> {
     let families = [
@@ -22,11 +22,6 @@ pub fn cases() -> Vec<Case> {
         two_spheres(),
     ];
     families.into_iter().flatten().collect()
-}
-
-fn vector(value: &Value) -> DVec3 {
-    let list = numbers(value);
-    DVec3::new(list[0], list[1], list[2])
 }
 
 /// A small diffuse square about `p` seen from just above it, in a spot of 1e-4.
@@ -51,15 +46,11 @@ fn polygon_irradiance(corners: &[DVec3], normal: DVec3, le: f64) -> f64 {
             above.push(a + (b - a) * (da / (da - db)));
         }
     }
-    let sum: f64 = (0..above.len())
-        .map(|i| {
-            let (u, w) = (
-                above[i].normalize(),
-                above[(i + 1) % above.len()].normalize(),
-            );
-            u.dot(w).clamp(-1.0, 1.0).acos() * u.cross(w).normalize().dot(normal)
-        })
-        .sum();
+    let edge = |i: usize| {
+        let [u, w] = [i, i + 1].map(|i| above[i % above.len()].normalize());
+        u.dot(w).clamp(-1.0, 1.0).acos() * u.cross(w).normalize().dot(normal)
+    };
+    let sum: f64 = (0..above.len()).map(edge).sum();
     le / 2.0 * sum.abs()
 }
 
@@ -67,18 +58,12 @@ fn polygon(id: &str) -> Vec<Case> {
     let t = truth(id);
     let setup = &t["setup"];
     let (p, normal) = (vector(&setup["P"]), vector(&setup["N"]).normalize());
-    let (le, rho) = (number(&setup["Le"]), number(&setup["rho"]));
-    let corners: Vec<DVec3> = setup["V"].as_array().unwrap().iter().map(vector).collect();
-    let exact = number(&t["exact"]["L_o"]);
+    let [le, rho] = t.all(["Le", "rho"]);
+    let corners: Vec<DVec3> = list(&setup["V"]).iter().map(vector).collect();
+    let exact = t.exact("L_o");
     let relative: Vec<DVec3> = corners.iter().map(|c| *c - p).collect();
-    agree(
-        polygon_irradiance(&relative, normal, le),
-        number(&t["exact"]["E"]),
-    );
-    let (a, b) = (
-        (corners[1] - corners[0]) / 2.0,
-        (corners[3] - corners[0]) / 2.0,
-    );
+    agree(polygon_irradiance(&relative, normal, le), t.exact("E"));
+    let [a, b] = [1, 3].map(|i: usize| (corners[i] - corners[0]) / 2.0);
     let centre = (corners[0] + corners[2]) / 2.0;
     ["front", "back", "both"]
         .into_iter()
@@ -115,9 +100,8 @@ fn sphere_factor(r: f64, d: f64, c: f64) -> f64 {
 
 fn sphere() -> Vec<Case> {
     let t = truth("sphere_light");
-    let of = |key: &str| number(&t["setup"][key]);
-    let (r, d, le, rho) = (of("r"), of("d"), of("Le"), of("rho"));
-    let rows = t["exact"]["per_angle"].as_array().unwrap();
+    let [r, d, le, rho] = t.all(["r", "d", "Le", "rho"]);
+    let rows = t.rows("per_angle");
     rows.iter()
         .map(|row| {
             let degrees = number(&row["beta_deg"]);
@@ -134,9 +118,8 @@ fn sphere() -> Vec<Case> {
 
 fn disk() -> Vec<Case> {
     let t = truth("disk_light");
-    let of = |key: &str| number(&t["setup"][key]);
-    let (r, h, le, rho) = (of("r"), of("h"), of("Le"), of("rho"));
-    let rows = t["exact"]["per_offset"].as_array().unwrap();
+    let [r, h, le, rho] = t.all(["r", "h", "Le", "rho"]);
+    let rows = t.rows("per_offset");
     rows.iter()
         .map(|row| {
             let a = number(&row["a"]);
@@ -154,9 +137,8 @@ fn disk() -> Vec<Case> {
 
 fn point() -> Vec<Case> {
     let t = truth("point_light");
-    let of = |key: &str| number(&t["setup"][key]);
-    let (intensity, h, rho) = (of("I"), of("h"), of("rho"));
-    let rows = t["exact"]["per_point"].as_array().unwrap();
+    let [intensity, h, rho] = t.all(["I", "h", "rho"]);
+    let rows = t.rows("per_point");
     rows.iter()
         .map(|row| {
             let x = number(&row["x"]);
@@ -171,9 +153,8 @@ fn point() -> Vec<Case> {
 
 fn occluder() -> Vec<Case> {
     let t = truth("sphere_occluder_in_environment");
-    let of = |key: &str| number(&t["setup"][key]);
-    let (r, h, rho, lenv) = (of("r"), of("h"), of("rho"), of("Lenv"));
-    let rows = t["exact"]["per_point"].as_array().unwrap();
+    let [r, h, rho, lenv] = t.all(["r", "h", "rho", "Lenv"]);
+    let rows = t.rows("per_point");
     rows.iter()
         .map(|row| {
             let x = number(&row["x"]);
@@ -197,30 +178,21 @@ fn occluder() -> Vec<Case> {
 fn mirror_image() -> Vec<Case> {
     let t = truth("mirror_image_of_sphere_light");
     let setup = &t["setup"];
-    let of = |key: &str| number(&setup[key]);
-    let (r, reflectance, le, rho, x) = (of("r"), of("R"), of("Le"), of("rho"), of("mirror_x"));
+    let [r, reflectance, le, rho, x] = t.all(["r", "R", "Le", "rho", "mirror_x"]);
     let (p, centre) = (vector(&setup["P"]), vector(&setup["sphere"]));
     let irradiance = |c: DVec3| {
         let to = c - p;
         PI * le * sphere_factor(r, to.length(), to.z / to.length())
     };
     let image = DVec3::new(2.0 * x - centre.x, centre.y, centre.z);
-    agree(irradiance(centre), number(&t["exact"]["E_direct"]));
-    agree(
-        reflectance * irradiance(image),
-        number(&t["exact"]["E_mirror"]),
-    );
+    agree(irradiance(centre), t.exact("E_direct"));
+    agree(reflectance * irradiance(image), t.exact("E_mirror"));
     let scene = receiver(p, DVec3::Z, rho)
         .material("lamp", &format!("emit = {le:?}"))
         .material("mirror", &format!("mirror = {{ ideal = {reflectance:?} }}"))
         .sphere("lamp", r, centre)
-        .rectangle(
-            "mirror",
-            5.0 * DVec3::Y,
-            5.0 * DVec3::Z,
-            DVec3::new(x, 0.0, 0.0),
-        );
-    let exact = number(&t["exact"]["L_o"]);
+        .rectangle("mirror", 5.0 * DVec3::Y, 5.0 * DVec3::Z, x * DVec3::X);
+    let exact = t.exact("L_o");
     // The receiver's own light by way of the mirror is below 1e-5 of it.
     vec![Case::new("mirror_image_of_sphere_light", scene, exact).systematic(1e-5)]
 }
@@ -249,7 +221,7 @@ fn plates() -> Vec<Case> {
     let t = truth("plate_view_factors");
     let [opposed, perpendicular, disks] =
         ["opposed", "perpendicular", "disks"].map(|key| numbers(&t["setup"][key]));
-    let exact = |key: &str| number(&t["exact"][key]);
+    let exact = |key: &str| t.exact(key);
     let view = |centre: DVec3, side: f64| {
         Text::upright(centre + 1e-3 * DVec3::Z, -DVec3::Z, DVec3::Y, side)
             .size([16, 16])
@@ -265,10 +237,8 @@ fn plates() -> Vec<Case> {
     let scene = view(DVec3::ZERO, side)
         .rectangle("plate", a / 2.0 * x, b / 2.0 * y, DVec3::ZERO)
         .rectangle("lamp", b / 2.0 * y, a / 2.0 * x, c * z);
-    let mut cases = vec![
-        Case::new("plate_view_factors opposed", scene, exact("F_opposed"))
-            .mapped(0.0, side * side / (a * b)),
-    ];
+    let case = Case::new("plate_view_factors opposed", scene, exact("F_opposed"));
+    let mut cases = vec![case.mapped(0.0, side * side / (a * b))];
 
     let [w, h, l] = perpendicular[..] else {
         panic!()
@@ -278,31 +248,24 @@ fn plates() -> Vec<Case> {
     let scene = view(centre, side)
         .rectangle("plate", w / 2.0 * x, l / 2.0 * y, centre)
         .rectangle("lamp", l / 2.0 * y, h / 2.0 * z, h / 2.0 * z);
-    cases.push(
-        Case::new(
-            "plate_view_factors perpendicular",
-            scene,
-            exact("F_perpendicular"),
-        )
-        .mapped(0.0, side * side / (w * l)),
-    );
+    let name = "plate_view_factors perpendicular";
+    let case = Case::new(name, scene, exact("F_perpendicular"));
+    cases.push(case.mapped(0.0, side * side / (w * l)));
 
     let [r1, r2, h] = disks[..] else { panic!() };
     agree(disks_factor(r1, r2, h), exact("F_disks_12"));
     let scene = view(DVec3::ZERO, 2.0 * r1)
         .disk("plate", r1, z, DVec3::ZERO)
         .disk("lamp", r2, -z, h * z);
-    cases.push(
-        Case::new("plate_view_factors disks", scene, exact("F_disks_12")).mapped(0.0, 4.0 / PI),
-    );
+    let case = Case::new("plate_view_factors disks", scene, exact("F_disks_12"));
+    cases.push(case.mapped(0.0, 4.0 / PI));
     cases
 }
 
 /// F12 is the mean over sphere 1 of the factor of its elements, and those are looked at.
 fn two_spheres() -> Vec<Case> {
     let t = truth("two_sphere_view_factor");
-    let of = |key: &str| number(&t["setup"][key]);
-    let (r1, r2, s) = (of("r1"), of("r2"), of("s"));
+    let [r1, r2, s] = t.all(["r1", "r2", "s"]);
     let element = |r1: f64, r2: f64, psi: f64| {
         let d = (r1 * r1 + s * s - 2.0 * r1 * s * psi.cos()).sqrt();
         sphere_factor(r2, d, (s * psi.cos() - r1) / d)
@@ -317,8 +280,8 @@ fn two_spheres() -> Vec<Case> {
             .sum();
         sum * step / 2.0
     };
-    agree(factor(r1, r2), number(&t["exact"]["F12"]));
-    agree(factor(r2, r1), number(&t["exact"]["F21"]));
+    agree(factor(r1, r2), t.exact("F12"));
+    agree(factor(r2, r1), t.exact("F21"));
     let largest = element(r1, r2, 0.0);
     (0..8)
         .map(|i| f64::from(i) * PI / 16.0)

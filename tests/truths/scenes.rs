@@ -1,30 +1,23 @@
 //! Scene files as text, put together from their parts.
 
-use std::fmt::Write as _;
-
 use glam::DVec3;
 
 use super::harness::replicates;
 
 /// A scene file without its sample counts.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Text {
     camera: String,
     pub size: [u32; 2],
-    depth: Option<u32>,
+    /// Further keys of the image.
     extra: String,
     materials: String,
     objects: String,
     environment: String,
 }
 
-/// A number as TOML reads it.
-pub fn n(x: f64) -> String {
-    format!("{x:?}")
-}
-
 fn v(p: DVec3) -> String {
-    format!("[{:?}, {:?}, {:?}]", p.x, p.y, p.z)
+    format!("{:?}", p.to_array())
 }
 
 /// A unit vector perpendicular to `d`.
@@ -34,19 +27,11 @@ pub fn across(d: DVec3) -> DVec3 {
 
 impl Text {
     fn new(from: DVec3, towards: DVec3, up: DVec3, rest: &str) -> Self {
+        let [at, to, up] = [from, from + towards, up].map(v);
         Self {
-            camera: format!(
-                "[camera]\nfrom = {}\nto = {}\nup = {}\n{rest}\n",
-                v(from),
-                v(from + towards),
-                v(up)
-            ),
+            camera: format!("camera = {{ from = {at}, to = {to}, up = {up}, {rest} }}\n"),
             size: [8, 8],
-            depth: None,
-            extra: String::new(),
-            materials: String::new(),
-            objects: String::new(),
-            environment: String::new(),
+            ..Self::default()
         }
     }
 
@@ -69,7 +54,7 @@ impl Text {
     /// A thin lens.
     pub fn lens(from: DVec3, towards: DVec3, up: DVec3, fov: f64, lens: [f64; 2]) -> Self {
         let [radius, focus] = lens;
-        let rest = format!("fov = {fov:?}\nlens = {{ radius = {radius:?}, focus = {focus:?} }}");
+        let rest = format!("fov = {fov:?}, lens = {{ radius = {radius:?}, focus = {focus:?} }}");
         Self::new(from, towards, up, &rest)
     }
 
@@ -79,14 +64,13 @@ impl Text {
     }
 
     /// Longest path in segments.
-    pub fn depth(mut self, depth: u32) -> Self {
-        self.depth = Some(depth);
-        self
+    pub fn depth(self, depth: u32) -> Self {
+        self.image(&format!("max_depth = {depth}"))
     }
 
-    /// A further line of `[image]`.
-    pub fn image(mut self, line: &str) -> Self {
-        writeln!(self.extra, "{line}").unwrap();
+    /// A further key of the image.
+    pub fn image(mut self, key: &str) -> Self {
+        self.extra += &format!(", {key}");
         self
     }
 
@@ -95,33 +79,27 @@ impl Text {
     }
 
     pub fn material(mut self, name: &str, text: &str) -> Self {
-        writeln!(self.materials, "{name} = {{ {text} }}").unwrap();
+        self.materials += &format!("materials.{name} = {{ {text} }}\n");
         self
     }
 
     /// An object where its shape's own numbers put it.
     pub fn object(mut self, shape: &str, material: &str) -> Self {
-        writeln!(
-            self.objects,
-            "[[object]]\nshape = {{ {shape} }}\nmaterial = \"{material}\""
-        )
-        .unwrap();
+        self.objects += &format!("[[object]]\nshape = {{ {shape} }}\nmaterial = \"{material}\"\n");
         self
+    }
+
+    /// A slab of glass or the like: a cube of these half axes.
+    pub fn block(self, material: &str, columns: [DVec3; 3], at: DVec3) -> Self {
+        self.placed("cube = {}", material, columns, at)
     }
 
     /// An object under the affine map with these columns.
     pub fn placed(self, shape: &str, material: &str, columns: [DVec3; 3], at: DVec3) -> Self {
         let mut text = self.object(shape, material);
         let [a, b, c] = columns;
-        let row = |i: usize| format!("[{:?}, {:?}, {:?}, {:?}]", a[i], b[i], c[i], at[i]);
-        writeln!(
-            text.objects,
-            "transform = [{{ matrix = [{}, {}, {}] }}]",
-            row(0),
-            row(1),
-            row(2)
-        )
-        .unwrap();
+        let rows = [0, 1, 2].map(|i| [a[i], b[i], c[i], at[i]]);
+        text.objects += &format!("transform = [{{ matrix = {rows:?} }}]\n");
         text
     }
 
@@ -146,22 +124,15 @@ impl Text {
     }
 
     pub fn point_light(mut self, at: DVec3, intensity: f64) -> Self {
-        writeln!(
-            self.objects,
-            "[[light]]\npoint = {}\nintensity = {intensity:?}",
-            v(at)
-        )
-        .unwrap();
+        let at = v(at);
+        self.objects += &format!("[[light]]\npoint = {at}\nintensity = {intensity:?}\n");
         self
     }
 
     pub fn directional(mut self, direction: DVec3, irradiance: f64) -> Self {
-        writeln!(
-            self.objects,
-            "[[light]]\ndirection = {}\nirradiance = {irradiance:?}",
-            v(direction)
-        )
-        .unwrap();
+        let direction = v(direction);
+        self.objects +=
+            &format!("[[light]]\ndirection = {direction}\nirradiance = {irradiance:?}\n");
         self
     }
 
@@ -172,15 +143,9 @@ impl Text {
 
     /// The whole file.
     pub fn file(&self, spp: u32, seed: u64) -> String {
-        let [width, height] = self.size;
-        let depth = match self.depth {
-            Some(depth) => format!("max_depth = {depth}\n"),
-            None => String::new(),
-        };
-        let replicates = replicates(spp);
+        let (size, replicates) = (self.size, replicates(spp));
         format!(
-            "{}{}[image]\nsize = [{width}, {height}]\nspp = {spp}\nseed = {seed}\n\
-             replicates = {replicates}\n{depth}{}[materials]\n{}{}",
+            "{}{}image = {{ size = {size:?}, spp = {spp}, seed = {seed}, replicates = {replicates}{} }}\n{}{}",
             self.environment, self.camera, self.extra, self.materials, self.objects
         )
     }

@@ -25,6 +25,8 @@ pub fn cases() -> Vec<Case> {
         ("dispersive glass", "glass = \"N-SF11\""),
         ("checkerboard", "checkerboard = [1, 1], cell = 0.25"),
     ];
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    let lying = [0.4 * x, 0.5 * z, -0.4 * y];
     let mut cases = Vec::new();
     for (camera, text) in cameras() {
         for (name, material) in materials {
@@ -35,22 +37,13 @@ pub fn cases() -> Vec<Case> {
                 .material("body", material)
                 .object("cube = { side = 1 }", "body")
                 .sphere("body", 0.6, DVec3::new(1.2, 0.1, 0.0))
-                .placed(
-                    "cylinder = {}",
-                    "body",
-                    [0.4 * DVec3::X, 0.5 * DVec3::Z, -0.4 * DVec3::Y],
-                    DVec3::new(0.0, 1.05, 0.1),
-                )
+                .placed("cylinder = {}", "body", lying, DVec3::new(0.0, 1.05, 0.1))
                 .environment(RADIANCE);
-            cases.push(Case::new(
-                format!("white {name}, {camera}"),
-                scene,
-                RADIANCE,
-            ));
+            let name = format!("white {name}, {camera}");
+            cases.push(Case::new(name, scene, RADIANCE));
         }
     }
     // A hollow: a tube of diffuse disks and squares seen from its mouth.
-    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
     for sampler in ["sobol", "stratified", "independent"] {
         let hollow = Text::perspective(DVec3::new(0.1, 0.2, 4.0), -z, 30.0)
             .image(&format!("sampler = \"{sampler}\""))
@@ -61,11 +54,8 @@ pub fn cases() -> Vec<Case> {
             .rectangle("wall", y, z, -x)
             .rectangle("wall", x, y, -z)
             .environment(RADIANCE);
-        cases.push(Case::new(
-            format!("white hollow, {sampler}"),
-            hollow,
-            RADIANCE,
-        ));
+        let name = format!("white hollow, {sampler}");
+        cases.push(Case::new(name, hollow, RADIANCE));
     }
     cases
 }

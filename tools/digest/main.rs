@@ -75,30 +75,18 @@ fn run(arguments: &Arguments) -> Result<bool, String> {
     {
         return Err(format!("{job:?}: instruction sets differ: {torn}"));
     }
-    let pixels = jobs
-        .iter()
-        .zip(&hashes)
-        .map(|(job, hashes)| job.row(hashes));
-    let tables = [
-        (
-            "pixels.csv",
-            pictures::COLUMNS.as_slice(),
-            pictures::KEYS,
-            pixels.collect(),
-        ),
-        ("plan.csv", plan::COLUMNS.as_slice(), plan::KEYS, plans),
-    ];
+    let pixels = jobs.iter().zip(&hashes);
+    let pixels = pixels.map(|(job, hashes)| job.row(hashes)).collect();
     let mut same = hashes.iter().all(Hashes::agree);
-    for (name, columns, keys, rows) in tables {
-        let made = Table::new(columns, keys, rows);
-        let path = root.join("tools/digest").join(name);
+    for (kind, rows) in [(&pictures::TABLE, pixels), (&plan::TABLE, plans)] {
+        let made = Table::new(kind, rows);
+        let path = root.join("tools/digest").join(kind.file);
         if arguments.write {
             made.write(&path)?;
             continue;
         }
-        let kept = Table::read(columns, keys, &path, only)?;
-        for difference in made.differences(&kept) {
-            println!("{name}: {difference}");
+        for difference in made.differences(&Table::read(kind, &path, only)?) {
+            println!("{}: {difference}", kind.file);
             same = false;
         }
     }

@@ -7,11 +7,14 @@ use sha2::{Digest, Sha256};
 
 use super::binary::Binary;
 use super::scenes::Variant;
+use super::table::Kind;
 
-/// Columns of the table, of which the first [`KEYS`] name the picture.
-pub const COLUMNS: [&str; 5] = ["scene", "panel", "rendering", "precision", "sha256"];
-/// How many columns name the picture.
-pub const KEYS: usize = 4;
+/// The table of all pictures, of whose columns the first four name the picture.
+pub const TABLE: Kind = Kind {
+    file: "pixels.csv",
+    columns: &["scene", "panel", "rendering", "precision", "sha256"],
+    keys: 4,
+};
 
 /// Pixels of the longer side.
 const LONGEST: u32 = 40;
@@ -19,30 +22,15 @@ const LONGEST: u32 = 40;
 const SAMPLES: &str = "8";
 /// Ways of rendering each scene and their arguments: all that is known of first hits, spectra with
 /// the smaller count of wavelengths, and everything in the loop.
-const RENDERINGS: [(&str, &[&str]); 3] = [
+const RENDERINGS: [(&str, &str); 3] = [
     (
         "first-hits",
-        &[
-            "--layers",
-            "depth,normal,object,material",
-            "--wavelengths",
-            "8",
-        ],
+        "--layers depth,normal,object,material --wavelengths 8",
     ),
-    (
-        "spectral",
-        &["--layers", "spectral:410-770:60", "--wavelengths", "4"],
-    ),
+    ("spectral", "--layers spectral:410-770:60 --wavelengths 4"),
     (
         "full",
-        &[
-            "--plan",
-            "full",
-            "--layers",
-            "depth,normal,object,material",
-            "--wavelengths",
-            "8",
-        ],
+        "--plan full --layers depth,normal,object,material --wavelengths 8",
     ),
 ];
 /// Arithmetic of the loop.
@@ -55,22 +43,21 @@ const DIGITS: usize = 16;
 pub struct Job<'a> {
     variant: &'a Variant,
     rendering: &'static str,
-    options: &'static [&'static str],
+    options: &'static str,
     precision: &'static str,
 }
 
 /// The pictures of a scene.
 pub fn jobs(variant: &Variant) -> impl Iterator<Item = Job<'_>> {
-    RENDERINGS
-        .into_iter()
-        .flat_map(move |(rendering, options)| {
-            PRECISIONS.map(|precision| Job {
-                variant,
-                rendering,
-                options,
-                precision,
-            })
+    let job = move |(rendering, options)| {
+        PRECISIONS.map(|precision| Job {
+            variant,
+            rendering,
+            options,
+            precision,
         })
+    };
+    RENDERINGS.into_iter().flat_map(job)
 }
 
 impl Job<'_> {
@@ -85,14 +72,11 @@ impl Job<'_> {
         let size = format!("{}x{}", small(width), small(height));
         let sets = binary.sets.iter().map(|&set| {
             let mut arguments = self.variant.arguments();
-            let chosen = [
-                ["--size", &size],
-                ["--spp", SAMPLES],
-                ["--precision", self.precision],
-                ["--instructions", set],
-            ];
-            let options = self.options.iter().chain(chosen.iter().flatten());
-            arguments.extend(options.map(|&option| option.to_owned()));
+            let (options, precision) = (self.options, self.precision);
+            let options = format!(
+                "{options} --size {size} --spp {SAMPLES} --precision {precision} --instructions {set}"
+            );
+            arguments.extend(options.split(' ').map(str::to_owned));
             Ok((set, hash(&binary.render(&arguments)?)))
         });
         sets.collect::<Result<_, String>>().map(Hashes)
@@ -141,7 +125,7 @@ fn hash(picture: &Picture) -> String {
         bits.iter()
             .for_each(|bits| digest.update(bits.to_le_bytes()));
     }
-    let digits = digest.finalize();
-    let digits: String = digits.iter().map(|byte| format!("{byte:02x}")).collect();
-    digits[..DIGITS].to_owned()
+    let bytes = digest.finalize();
+    let bytes = bytes.iter().take(DIGITS / 2);
+    bytes.map(|byte| format!("{byte:02x}")).collect()
 }

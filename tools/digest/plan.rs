@@ -6,22 +6,25 @@ use etalon::{Attribute, Picture};
 
 use super::binary::Binary;
 use super::scenes::Variant;
+use super::table::Kind;
 
-/// Columns of the table, of which the first [`KEYS`] name the scene.
-pub const COLUMNS: [&str; 10] = [
-    "scene",
-    "panel",
-    "precision",
-    "wavelengths",
-    "replicates",
-    "lights_left_out",
-    "index",
-    "occluders",
-    "finders",
-    "needs",
-];
-/// How many columns name the scene.
-pub const KEYS: usize = 2;
+/// The table of all plans, of whose columns the first two name the scene.
+pub const TABLE: Kind = Kind {
+    file: "plan.csv",
+    columns: &[
+        "scene",
+        "panel",
+        "precision",
+        "wavelengths",
+        "replicates",
+        "lights_left_out",
+        "index",
+        "occluders",
+        "finders",
+        "needs",
+    ],
+    keys: 2,
+};
 
 /// What etalon calls the branches of its loop, and what the table calls them. These and the other
 /// words here follow etalon's when they change; the table does not.

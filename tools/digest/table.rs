@@ -3,48 +3,44 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+/// What tables of a kind are made of.
+pub struct Kind {
+    pub file: &'static str,
+    pub columns: &'static [&'static str],
+    /// How many columns name a row.
+    pub keys: usize,
+}
+
 /// Rows in the order of their keys.
 pub struct Table {
-    columns: &'static [&'static str],
+    kind: &'static Kind,
     rows: BTreeMap<Vec<String>, Vec<String>>,
 }
 
 impl Table {
-    /// Rows of these columns, of which the first `keys` name the row.
-    pub fn new(
-        columns: &'static [&'static str],
-        keys: usize,
-        rows: impl IntoIterator<Item = Vec<String>>,
-    ) -> Self {
+    pub fn new(kind: &'static Kind, rows: Vec<Vec<String>>) -> Self {
         let split = |mut row: Vec<String>| {
-            let values = row.split_off(keys);
+            let values = row.split_off(kind.keys);
             (row, values)
         };
-        Self {
-            columns,
-            rows: rows.into_iter().map(split).collect(),
-        }
+        let rows = rows.into_iter().map(split).collect();
+        Self { kind, rows }
     }
 
-    /// The table at `path` of the same columns, its rows whose first column contains `only`.
+    /// The table at `path`, its rows whose first column contains `only`.
     ///
     /// # Errors
     /// A sentence about a file that cannot be read or has other columns.
-    pub fn read(
-        columns: &'static [&'static str],
-        keys: usize,
-        path: &Path,
-        only: &str,
-    ) -> Result<Self, String> {
+    pub fn read(kind: &'static Kind, path: &Path, only: &str) -> Result<Self, String> {
         let failed = |reason: csv::Error| format!("{}: {reason}", path.display());
         let mut file = csv::Reader::from_path(path).map_err(failed)?;
-        if file.headers().map_err(failed)? != columns {
+        if file.headers().map_err(failed)? != kind.columns {
             return Err(format!("{}: its columns are others", path.display()));
         }
         let rows = file.deserialize::<Vec<String>>();
-        let rows: Vec<_> = rows.collect::<Result<_, _>>().map_err(failed)?;
-        let rows = rows.into_iter().filter(|row| row[0].contains(only));
-        Ok(Self::new(columns, keys, rows))
+        let mut rows: Vec<_> = rows.collect::<Result<_, _>>().map_err(failed)?;
+        rows.retain(|row| row[0].contains(only));
+        Ok(Self::new(kind, rows))
     }
 
     /// Writes the table to `path`.
@@ -54,7 +50,7 @@ impl Table {
     pub fn write(&self, path: &Path) -> Result<(), String> {
         let write = || {
             let mut file = csv::Writer::from_path(path)?;
-            file.write_record(self.columns)?;
+            file.write_record(self.kind.columns)?;
             for (key, values) in &self.rows {
                 file.write_record(key.iter().chain(values))?;
             }
@@ -65,7 +61,7 @@ impl Table {
 
     /// In which values this differs from `kept`, a line each.
     pub fn differences(&self, kept: &Self) -> Vec<String> {
-        let names = &self.columns;
+        let names = &self.kind.columns;
         let mut lines = Vec::new();
         for (key, values) in &self.rows {
             let keys = key.join(" ");
@@ -75,11 +71,9 @@ impl Table {
             };
             let columns = names[key.len()..].iter().zip(before.iter().zip(values));
             let changed = columns.filter(|(_, (before, now))| before != now);
-            lines.extend(
-                changed.map(|(name, (before, now))| {
-                    format!("{keys}: {name} was {before:?}, is {now:?}")
-                }),
-            );
+            let words =
+                |(name, (before, now))| format!("{keys}: {name} was {before:?}, is {now:?}");
+            lines.extend(changed.map(words));
         }
         let gone = kept.rows.keys().filter(|key| !self.rows.contains_key(*key));
         lines.extend(gone.map(|key| format!("{}: gone", key.join(" "))));

@@ -20,24 +20,16 @@ use etalon::inside::spectrum::grid::{CELLS, WavelengthGrid};
 use etalon::inside::spectrum::{NM_MAX, NM_MIN};
 use etalon::{Plan, Scene};
 
-/// What can be wrong.
+/// What can be wrong; [`MISTAKES`] has the words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mistake {
-    /// A material reflects half a per cent too much.
     Reflectance,
-    /// Sampled parallel light lacks the cosine.
     Cosine,
-    /// Metals count one polarisation twice.
     Polarisation,
-    /// The wavelength density is off by a smooth 1 %.
     Wavelengths,
-    /// The lens is 1 % too large.
     Lens,
-    /// Paths end a bounce early.
     Bounce,
-    /// Normals keep the length that shear gives them.
     Normals,
-    /// The lights are believed to be chosen with equal probability.
     LightChoice,
     /// One in the loop itself.
     #[cfg(feature = "planted")]
@@ -120,14 +112,10 @@ fn planted<T: Scalar>(mistake: Mistake, scene: &Scene, model: &mut Model<T>) -> 
 fn scaled<T: Scalar>(model: &mut Model<T>, start: u32, factor: impl Fn(f64) -> f64) -> u32 {
     let rows = CELLS / WAVELENGTHS;
     let table = model.spectra.rows::<WAVELENGTHS>();
-    let values: Vec<f64> = middles()
-        .into_iter()
-        .enumerate()
-        .map(|(cell, nm)| {
-            let value = table[start as usize + cell % rows][cell / rows].to_f64();
-            value * factor(nm)
-        })
-        .collect();
+    let value = |(cell, nm): (usize, f64)| {
+        table[start as usize + cell % rows][cell / rows].to_f64() * factor(nm)
+    };
+    let values: Vec<f64> = middles().into_iter().enumerate().map(value).collect();
     model.spectra.push(&values)
 }
 
@@ -151,7 +139,7 @@ fn reflectance<T: Scalar>(model: &mut Model<T>) -> bool {
     };
     for object in 0..model.appearances.len() {
         let appearance = model.appearances[object];
-        if appearance.material == material && appearance.surface.kind == MaterialKind::Diffuse {
+        if appearance.material == material && diffuse(&&appearance) {
             let spectrum = appearance.surface.spectra[0];
             model.appearances[object].surface.spectra[0] = scaled(model, spectrum, |_| 1.005);
         }
@@ -194,14 +182,12 @@ fn polarisation<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
         if material.surface.kind != MaterialKind::Conductor {
             continue;
         }
-        let values: Vec<f64> = middles()
-            .into_iter()
-            .map(|nm| {
-                let (n, k) = index.n_k(nm);
-                let [s, p] = fresnel::conductor_polarised(cosine, n, k);
-                (2.0 * s + p) / 3.0
-            })
-            .collect();
+        let reflectance = |nm: f64| {
+            let (n, k) = index.n_k(nm);
+            let [s, p] = fresnel::conductor_polarised(cosine, n, k);
+            (2.0 * s + p) / 3.0
+        };
+        let values: Vec<f64> = middles().into_iter().map(reflectance).collect();
         let surface = &mut model.appearances[object].surface;
         surface.spectra[0] = model.spectra.push(&values);
         surface.kind = MaterialKind::Mirror;

@@ -2,10 +2,7 @@
 //! walls, a blurred spot shows the square of the lens's radius, and so on. Each takes a few
 //! hundredths of a second.
 
-use std::path::Path;
-
-use etalon::inside::scene::parse;
-use etalon::{Overrides, Scene};
+use etalon::Scene;
 
 /// Name and text of each scene; `image` has no samples, which are planned.
 pub const SCENES: &[(&str, &str)] = &[
@@ -21,16 +18,10 @@ pub const SCENES: &[(&str, &str)] = &[
 
 /// L = E/(1 − ρ): half a per cent more of the walls' ρ = 0.8 is two per cent more light.
 const CLOSED_ROOM: &str = r#"
-[camera]
-from = [0, 0, 0.9]
-to = [0.2, 0.1, 0]
-fov = 70
-[image]
-size = [24, 24]
-spp = 1
-[materials]
-wall = { diffuse = 0.8, emit = 0.2, sides = "back" }
-ball = { diffuse = 0.6 }
+camera = { from = [0, 0, 0.9], to = [0.2, 0.1, 0], fov = 70 }
+image = { size = [24, 24], spp = 1 }
+materials.wall = { diffuse = 0.8, emit = 0.2, sides = "back" }
+materials.ball = { diffuse = 0.6 }
 [[object]]
 shape = "cube"
 material = "wall"
@@ -41,17 +32,9 @@ material = "ball"
 
 /// Radiance is ρ/π · E · cos 60°.
 const SLANTING_SUN: &str = r#"
-[camera]
-from = [0, 3, 0]
-to = [0, 0, 0]
-up = [0, 0, 1]
-orthographic = 2
-[image]
-size = [24, 24]
-spp = 1
-max_depth = 2
-[materials]
-floor = { diffuse = { rgb = [0.6, 0.4, 0.3] } }
+camera = { from = [0, 3, 0], to = [0, 0, 0], up = [0, 0, 1], orthographic = 2 }
+image = { size = [24, 24], spp = 1, max_depth = 2 }
+materials.floor = { diffuse = { rgb = [0.6, 0.4, 0.3] } }
 [[object]]
 shape = { rectangle = { size = [9, 9] } }
 material = "floor"
@@ -64,15 +47,9 @@ irradiance = "D65"
 /// All rays meet the mirror at 60°.
 const METAL: &str = r#"
 environment = "D65"
-[camera]
-from = [0, 0, 5]
-to = [0, 0, 0]
-orthographic = 1
-[image]
-size = [24, 24]
-spp = 1
-[materials]
-metal = { mirror = "Al" }
+camera = { from = [0, 0, 5], to = [0, 0, 0], orthographic = 1 }
+image = { size = [24, 24], spp = 1 }
+materials.metal = { mirror = "Al" }
 [[object]]
 shape = { rectangle = { size = [10, 10] } }
 material = "metal"
@@ -82,17 +59,10 @@ transform = [{ rotate_y = 60 }]
 /// Metal under all angles.
 const METAL_BALLS: &str = r#"
 environment = "D65"
-[camera]
-from = [0, 0, 6]
-to = [0, 0, 0]
-fov = 24
-[image]
-size = [24, 24]
-spp = 1
-max_depth = 3
-[materials]
-aluminium = { mirror = "Al" }
-copper = { mirror = "Cu" }
+camera = { from = [0, 0, 6], to = [0, 0, 0], fov = 24 }
+image = { size = [24, 24], spp = 1, max_depth = 3 }
+materials.aluminium = { mirror = "Al" }
+materials.copper = { mirror = "Cu" }
 [[object]]
 shape = { sphere = { radius = 0.6, center = [-0.6, 0, 0] } }
 material = "aluminium"
@@ -104,16 +74,9 @@ material = "copper"
 /// A lamp far behind the plane of focus: a spot whose area grows as the radius squared. The picture
 /// lies where all of the lamp is seen.
 const BLURRED_SPOT: &str = r#"
-[camera]
-from = [0, 0, 0]
-to = [0, 0, 1]
-fov = 0.5
-lens = { radius = 0.2, focus = 2 }
-[image]
-size = [24, 24]
-spp = 1
-[materials]
-lamp = { emit = { blackbody = 4000, scale = 1e-3 }, sides = "both" }
+camera = { from = [0, 0, 0], to = [0, 0, 1], fov = 0.5, lens = { radius = 0.2, focus = 2 } }
+image = { size = [24, 24], spp = 1 }
+materials.lamp = { emit = { blackbody = 4000, scale = 1e-3 }, sides = "both" }
 [[object]]
 shape = { disk = { radius = 0.15 } }
 material = "lamp"
@@ -122,16 +85,9 @@ transform = [{ translate = [0, 0, 4] }]
 
 /// E (1 + ρ + ρ² + ρ³ + ρ⁴) inside a closed sphere.
 const FIVE_SEGMENTS: &str = r#"
-[camera]
-from = [0, 0, 0]
-to = [0, 0, 1]
-fov = 60
-[image]
-size = [24, 24]
-spp = 1
-max_depth = 5
-[materials]
-wall = { diffuse = 0.7, emit = 0.3, sides = "back" }
+camera = { from = [0, 0, 0], to = [0, 0, 1], fov = 60 }
+image = { size = [24, 24], spp = 1, max_depth = 5 }
+materials.wall = { diffuse = 0.7, emit = 0.3, sides = "back" }
 [[object]]
 shape = "sphere"
 material = "wall"
@@ -139,18 +95,11 @@ material = "wall"
 
 /// Cards and a block under shear, lit by a lamp.
 const SHEARED_CARDS: &str = r#"
-[camera]
-from = [0, 2, 6]
-to = [0, 0.3, 0]
-fov = 30
-[image]
-size = [24, 24]
-spp = 1
-max_depth = 3
-[materials]
-paper = { diffuse = 0.7 }
-block = { diffuse = { rgb = [0.7, 0.4, 0.2] } }
-lamp = { emit = 3, sides = "front" }
+camera = { from = [0, 2, 6], to = [0, 0.3, 0], fov = 30 }
+image = { size = [24, 24], spp = 1, max_depth = 3 }
+materials.paper = { diffuse = 0.7 }
+materials.block = { diffuse = { rgb = [0.7, 0.4, 0.2] } }
+materials.lamp = { emit = 3, sides = "front" }
 [[object]]
 shape = { rectangle = { size = [3, 3] } }
 material = "paper"
@@ -167,18 +116,10 @@ transform = [{ rotate_x = 90 }, { translate = [0.5, 4, 2] }]
 
 /// Two lamps of unequal power, each over its own half of the floor.
 const TWO_LAMPS: &str = r#"
-[camera]
-from = [0, 5, 0]
-to = [0, 0, 0]
-up = [0, 0, 1]
-orthographic = 4
-[image]
-size = [24, 24]
-spp = 1
-max_depth = 2
-[materials]
-left = { diffuse = 0.5 }
-right = { diffuse = 0.5 }
+camera = { from = [0, 5, 0], to = [0, 0, 0], up = [0, 0, 1], orthographic = 4 }
+image = { size = [24, 24], spp = 1, max_depth = 2 }
+materials.left = { diffuse = 0.5 }
+materials.right = { diffuse = 0.5 }
 [[object]]
 shape = { rectangle = { size = [4, 8] } }
 material = "left"
@@ -197,6 +138,5 @@ intensity = 1.5
 
 /// A scene of the list.
 pub fn scene(text: &str) -> Scene {
-    parse("scene", text, Path::new(""), &Overrides::default())
-        .unwrap_or_else(|error| panic!("{error}"))
+    Scene::parse(text).unwrap_or_else(|error| panic!("{error}"))
 }

@@ -1,17 +1,34 @@
 //! `etalon-method finders`: the root finders of implicit surfaces, compared.
 
-use std::fmt::Write as _;
-use std::io::Write as _;
+use std::io::{Error, Write as _};
 use std::path::{Path, PathBuf};
 
 use etalon_method::failures;
-use etalon_method::finders::chart::{csv, svg};
+use etalon_method::finders::chart::{ChartError, csv, svg};
 use etalon_method::finders::map::map;
-use etalon_method::finders::{CONTESTANTS, Contestant, Oracle, Result as Outcome, run as run_one};
+use etalon_method::finders::{
+    CONTESTANTS, Contestant, Oracle, OracleError, Result as Outcome, run as run_one,
+};
 
 use super::args::Finders;
-use super::error::CommandError;
 use super::tell;
+
+/// Why a command could not be carried out; `Display` is what the user sees.
+#[derive(Debug, thiserror::Error)]
+pub enum CommandError {
+    /// A table cannot be read, or a result not written: what, which file, why.
+    #[error("error: cannot {} {}: {}", .0, .1.display(), .2)]
+    File(&'static str, PathBuf, String),
+    /// The rays or surfaces cannot be used.
+    #[error("error: {0}")]
+    Oracle(#[from] OracleError),
+    /// There is no such surface to paint.
+    #[error("error: --map: there is no surface \"{name}\"; there are {known}")]
+    Surface { name: String, known: String },
+    /// Standard output cannot be written to.
+    #[error("error: cannot write the output: {0}")]
+    Output(Error),
+}
 
 /// Charts all finders, or maps one surface; whether those that prove their answers were right.
 pub fn run(arguments: &Finders) -> Result<bool, CommandError> {
@@ -37,11 +54,7 @@ fn failures(arguments: &Finders) -> Result<bool, CommandError> {
     let table = failures::chart::csv(&points);
     write(&arguments.output.join("failures.csv"), table.as_bytes())?;
     let picture = arguments.output.join("failures.svg");
-    let drawn = failures::chart::svg(&points).map_err(|error| CommandError::Result {
-        path: picture.clone(),
-        reason: error.to_string(),
-    })?;
-    write(&picture, drawn.as_bytes())?;
+    write_chart(&picture, failures::chart::svg(&points))?;
     say(&failures::summary(&points))?;
     Ok(points.iter().all(failures::Point::is_safe))
 }
@@ -57,33 +70,23 @@ fn chart(arguments: &Finders, oracle: &Oracle) -> Result<bool, CommandError> {
     let table = arguments.output.join("finders.csv");
     write(&table, csv(&results).as_bytes())?;
     let picture = arguments.output.join("finders.svg");
-    let drawn = svg(&results).map_err(|error| CommandError::Result {
-        path: picture.clone(),
-        reason: error.to_string(),
-    })?;
-    write(&picture, drawn.as_bytes())?;
+    write_chart(&picture, svg(&results))?;
     say(&summary(&results))?;
-    Ok(results.iter().all(|result| {
-        !matches!(result.contestant, Contestant::Proved(_)) || result.all().wrong == 0
-    }))
+    let right = |result: &Outcome| !result.contestant.is_proved() || result.all().wrong == 0;
+    Ok(results.iter().all(right))
 }
 
 fn paint(arguments: &Finders, oracle: &Oracle, name: &str) -> Result<bool, CommandError> {
-    let unknown = || CommandError::Surface {
-        name: name.to_owned(),
-        known: oracle
-            .shapes
-            .iter()
-            .map(|shape| shape.name.as_str())
-            .collect::<Vec<_>>()
-            .join(", "),
+    let unknown = || {
+        let known = oracle.shapes.iter().map(|shape| shape.name.as_str());
+        CommandError::Surface {
+            name: name.to_owned(),
+            known: known.collect::<Vec<_>>().join(", "),
+        }
     };
     let shape = oracle.shape(name).ok_or_else(unknown)?;
     let path = arguments.output.join(format!("finders-{name}.png"));
-    let failed = |reason: String| CommandError::Result {
-        path: path.clone(),
-        reason,
-    };
+    let failed = |reason: String| CommandError::File("write", path.clone(), reason);
     let Some((picture, counts)) = map(shape, arguments.size) else {
         return Err(failed("the surface cannot be placed".to_owned()));
     };
@@ -92,34 +95,27 @@ fn paint(arguments: &Finders, oracle: &Oracle, name: &str) -> Result<bool, Comma
     let mut text = String::from("finder,precision,steps,wrong,undecided\n");
     for count in &counts {
         let contestant = count.contestant;
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "{},{},{},{},{}",
+        text += &format!(
+            "{},{},{},{},{}\n",
             contestant.name(),
-            contestant.precision(),
-            contestant
-                .steps()
-                .map(|s| s.to_string())
-                .unwrap_or_default(),
+            contestant.precision().name(),
+            contestant.steps(),
             count.wrong,
             count.undecided
         );
     }
     say(&text)?;
-    Ok(counts
-        .iter()
-        .all(|count| !matches!(count.contestant, Contestant::Proved(_)) || count.wrong == 0))
+    let mut counts = counts.iter();
+    Ok(counts.all(|count| !count.contestant.is_proved() || count.wrong == 0))
 }
 
 fn described(contestant: Contestant) -> String {
-    match contestant.steps() {
-        Some(steps) => format!(
-            "{} in {}, {steps} steps",
-            contestant.name(),
-            contestant.precision()
-        ),
-        None => contestant.name().to_owned(),
+    let name = contestant.name();
+    match contestant {
+        Contestant::SignChange(precision, steps) => {
+            format!("{name} in {}, {steps} steps", precision.name())
+        }
+        Contestant::Proved(_) => name.to_owned(),
     }
 }
 
@@ -128,10 +124,8 @@ fn summary(results: &[Outcome]) -> String {
     let mut text = String::new();
     for result in results {
         let all = result.all();
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "{:38} wrong {:5} undecided {:5} of {}, {:10.0} ns a ray",
+        text += &format!(
+            "{:38} wrong {:5} undecided {:5} of {}, {:10.0} ns a ray\n",
             described(result.contestant),
             all.wrong,
             all.undecided,
@@ -151,10 +145,8 @@ fn say(text: &str) -> Result<(), CommandError> {
 }
 
 fn read(path: &Path) -> Result<String, CommandError> {
-    std::fs::read_to_string(path).map_err(|error| CommandError::Table {
-        path: path.to_owned(),
-        reason: error.to_string(),
-    })
+    let failed = |error: Error| CommandError::File("read", path.to_owned(), error.to_string());
+    std::fs::read_to_string(path).map_err(failed)
 }
 
 /// Makes the directory of a file.
@@ -163,16 +155,18 @@ fn prepare(path: &Path) -> Result<(), CommandError> {
     if parent.as_os_str().is_empty() {
         return Ok(());
     }
-    std::fs::create_dir_all(&parent).map_err(|error| CommandError::Result {
-        path: parent,
-        reason: error.to_string(),
-    })
+    let failed = |error: Error| CommandError::File("write", parent.clone(), error.to_string());
+    std::fs::create_dir_all(&parent).map_err(failed)
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
     prepare(path)?;
-    std::fs::write(path, bytes).map_err(|error| CommandError::Result {
-        path: path.to_owned(),
-        reason: error.to_string(),
-    })
+    let failed = |error: Error| CommandError::File("write", path.to_owned(), error.to_string());
+    std::fs::write(path, bytes).map_err(failed)
+}
+
+fn write_chart(path: &Path, drawn: Result<String, ChartError>) -> Result<(), CommandError> {
+    let failed =
+        |error: ChartError| CommandError::File("write", path.to_owned(), error.to_string());
+    write(path, drawn.map_err(failed)?.as_bytes())
 }

@@ -5,7 +5,6 @@
 
 mod args;
 mod command;
-mod error;
 
 use std::io::{ErrorKind, Write as _};
 use std::process::ExitCode;
@@ -13,7 +12,7 @@ use std::process::ExitCode;
 use clap::Parser as _;
 
 use args::{Arguments, Command};
-use error::CommandError;
+use command::CommandError;
 
 /// Exit code of a command that could not be carried out.
 const COULD_NOT: u8 = 2;

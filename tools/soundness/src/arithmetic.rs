@@ -8,15 +8,6 @@ use etalon_doors::intervals::{Bounds, Operation, arithmetic};
 use super::exact::{compare_product, compare_sum};
 use super::random::Source;
 
-/// All of them.
-pub const OPERATIONS: [Operation; 5] = [
-    Operation::Sum,
-    Operation::Difference,
-    Operation::Product,
-    Operation::Quotient,
-    Operation::SquareRoot,
-];
-
 /// Whether the bounds hold the exact result of two numbers; true where there is none.
 pub fn holds(operation: Operation, x: f64, y: f64, [low, high]: [f64; 2]) -> bool {
     let ordered = |bound: f64, order: &dyn Fn(f64) -> Ordering, wanted: Ordering| {
@@ -36,18 +27,14 @@ pub fn holds(operation: Operation, x: f64, y: f64, [low, high]: [f64; 2]) -> boo
         Operation::Quotient if y < 0.0 => Box::new(move |z| compare_product(z, y, x)),
         Operation::Quotient => Box::new(move |z| compare_product(z, y, x).reverse()),
         Operation::SquareRoot if x < 0.0 => return true,
-        Operation::SquareRoot => Box::new(move |z| {
-            if z < 0.0 {
-                Ordering::Greater
-            } else {
-                compare_product(z, z, x).reverse()
-            }
+        Operation::SquareRoot => Box::new(move |z| match z < 0.0 {
+            true => Ordering::Greater,
+            false => compare_product(z, z, x).reverse(),
         }),
     };
     ordered(low, &*order, Ordering::Greater) && ordered(high, &*order, Ordering::Less)
 }
 
-/// What a check has found.
 #[derive(Debug, Clone, Default)]
 pub struct Report {
     /// Intervals checked on every instruction set.
@@ -61,13 +48,35 @@ pub struct Report {
 }
 
 impl Report {
-    /// Both together.
     pub fn joined(self, other: Self) -> Self {
         Self {
             checked: self.checked + other.checked,
             violated: self.violated + other.violated,
             different: self.different + other.different,
             example: self.example.or(other.example),
+        }
+    }
+
+    /// What the first instruction set says, and how many say something else.
+    ///
+    /// # Panics
+    /// If there is no instruction set.
+    pub fn of<R>(mut results: impl Iterator<Item = R>, same: impl Fn(&R, &R) -> bool) -> (R, Self) {
+        let first = results
+            .next()
+            .expect("every machine has an instruction set");
+        let report = Self {
+            different: results.filter(|other| !same(&first, other)).count() as u64,
+            ..Self::default()
+        };
+        (first, report)
+    }
+
+    /// Counts what is not `held`, and keeps the words of the first.
+    pub fn note(&mut self, held: bool, words: impl FnOnce() -> String) {
+        if !held {
+            self.violated += 1;
+            self.example.get_or_insert_with(words);
         }
     }
 
@@ -87,30 +96,21 @@ pub fn check(operation: Operation, seed: u64, count: usize, unsound: bool) -> Re
         a.push(first);
         b.push(second);
     }
-    let mut report = Report {
-        checked: count as u64,
-        ..Report::default()
-    };
-    let mut results = Instructions::all()
-        .into_iter()
-        .map(|set| arithmetic(set, operation, [&a, &b], unsound));
-    let Some(first) = results.next() else {
-        return report;
-    };
-    report.different = results.filter(|other| !first.same_bits(other)).count() as u64;
+    let results = Instructions::all().into_iter();
+    let results = results.map(|set| arithmetic(set, operation, [&a, &b], unsound));
+    let (first, mut report) = Report::of(results, |a, b| a.same_bits(b));
     for i in 0..count {
         let bounds = first.at(i);
         for x in ends(a.at(i)) {
             for y in ends(b.at(i)) {
-                if !holds(operation, x, y, bounds) {
-                    report.violated += 1;
-                    report.example.get_or_insert_with(|| {
-                        format!("{operation:?} of {x:e} and {y:e} is not in {bounds:?}")
-                    });
-                }
+                let held = holds(operation, x, y, bounds);
+                report.note(held, || {
+                    format!("{operation:?} of {x:e}, {y:e} is not in {bounds:?}")
+                });
             }
         }
     }
+    report.checked = count as u64;
     report
 }
 

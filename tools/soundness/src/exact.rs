@@ -60,10 +60,9 @@ pub fn compare_product(x: f64, y: f64, z: f64) -> Ordering {
         let z = mz * 2f64.powi(shift);
         p.total_order(z).then(e.total_order(0.0))
     };
-    if sign > 0.0 {
-        magnitude
-    } else {
-        magnitude.reverse()
+    match sign > 0.0 {
+        true => magnitude,
+        false => magnitude.reverse(),
     }
 }
 
@@ -75,10 +74,8 @@ fn split(x: f64) -> (f64, i32) {
         return (m, e - 64);
     }
     let exponent = (x.to_bits() >> 52) as i32 - 1023;
-    (
-        f64::from_bits((x.to_bits() & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000),
-        exponent,
-    )
+    let significand = (x.to_bits() & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000;
+    (f64::from_bits(significand), exponent)
 }
 
 /// The order of two numbers of which none is NaN; −0 equals +0.
@@ -88,12 +85,6 @@ trait Ordered {
 
 impl Ordered for f64 {
     fn total_order(&self, other: f64) -> Ordering {
-        if *self < other {
-            Ordering::Less
-        } else if *self > other {
-            Ordering::Greater
-        } else {
-            Ordering::Equal
-        }
+        self.partial_cmp(&other).unwrap_or(Ordering::Equal)
     }
 }

@@ -7,27 +7,6 @@ use etalon_doors::intervals::{self, Bounds, Function};
 use super::arithmetic::Report;
 use super::random::Source;
 
-/// All of them.
-pub const FUNCTIONS: [Function; 17] = [
-    Function::Exponential,
-    Function::Logarithm,
-    Function::Sine,
-    Function::Cosine,
-    Function::SineThin,
-    Function::CosineThin,
-    Function::Tangent,
-    Function::ArcSine,
-    Function::ArcCosine,
-    Function::ArcTangent,
-    Function::ArcTangent2,
-    Function::HyperbolicSine,
-    Function::HyperbolicCosine,
-    Function::HyperbolicTangent,
-    Function::Power,
-    Function::Seventh,
-    Function::MinusFourth,
-];
-
 /// Bits of the reference: arguments of size 2¹⁰²⁴ keep them all after reduction by π.
 const PRECISION: usize = 192;
 const NEAREST: RoundingMode = RoundingMode::ToEven;
@@ -145,13 +124,7 @@ fn operands(function: Function, source: &mut Source) -> [[f64; 2]; 2] {
         _ => around(20.0),
     };
     let b = around(20.0);
-    let sorted = |[low, high]: [f64; 2]| {
-        if low <= high {
-            [low, high]
-        } else {
-            [high, low]
-        }
-    };
+    let sorted = |[a, b]: [f64; 2]| if a <= b { [a, b] } else { [b, a] };
     let trigonometric = matches!(
         function,
         Function::Sine
@@ -184,21 +157,13 @@ pub fn check(function: Function, seed: u64, count: usize, narrowed: bool) -> Opt
     let (mut a, mut b) = (Bounds::default(), Bounds::default());
     for _ in 0..count {
         let [first, second] = operands(function, &mut source);
-        a.low.push(first[0]);
-        a.high.push(first[1]);
-        b.low.push(second[0]);
-        b.high.push(second[1]);
+        a.push(first);
+        b.push(second);
     }
-    let mut report = Report {
-        checked: count as u64,
-        ..Report::default()
-    };
-    let mut results = Instructions::all()
-        .into_iter()
-        .map(|set| intervals::function(set, function, [&a, &b]));
-    let (first, broken) = results.next()?;
-    let same = |other: &(Bounds, Vec<bool>)| first.same_bits(&other.0) && broken == other.1;
-    report.different = results.filter(|other| !same(other)).count() as u64;
+    let results = Instructions::all().into_iter();
+    let results = results.map(|set| intervals::function(set, function, [&a, &b]));
+    let ((first, broken), mut report) =
+        Report::of(results, |a, b| a.0.same_bits(&b.0) && a.1 == b.1);
     for (i, broken) in broken.iter().enumerate() {
         let mut bounds = first.at(i);
         if narrowed {
@@ -211,14 +176,12 @@ pub fn check(function: Function, seed: u64, count: usize, narrowed: bool) -> Opt
                 // The whole line and a note are all that a point outside the domain asks for.
                 None => *broken || !notes(function),
             };
-            if !good {
-                report.violated += 1;
-                report.example.get_or_insert_with(|| {
-                    format!("{function:?} at {x:e}, {y:e} is not in {bounds:?}")
-                });
-            }
+            report.note(good, || {
+                format!("{function:?} at {x:e}, {y:e} is not in {bounds:?}")
+            });
         }
     }
+    report.checked = count as u64;
     Some(report)
 }
 
@@ -228,10 +191,6 @@ fn notes(function: Function) -> bool {
 }
 
 /// Sixteen steps narrower on each side: more than the kernels' own allowance.
-fn narrower([mut low, mut high]: [f64; 2]) -> [f64; 2] {
-    for _ in 0..16 {
-        low = low.next_up();
-        high = high.next_down();
-    }
-    [low, high]
+fn narrower(bounds: [f64; 2]) -> [f64; 2] {
+    (0..16).fold(bounds, |[low, high], _| [low.next_up(), high.next_down()])
 }

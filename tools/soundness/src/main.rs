@@ -9,10 +9,10 @@ mod rays;
 
 use std::process::ExitCode;
 
-use arithmetic::{OPERATIONS, Report};
+use arithmetic::Report;
 use clap::Parser;
 use etalon::Instructions;
-use functions::FUNCTIONS;
+use etalon_doors::intervals::{Function, Operation};
 use rayon::prelude::*;
 
 /// Intervals of one piece of work.
@@ -43,20 +43,16 @@ fn main() -> ExitCode {
     let names: Vec<&str> = Instructions::all().iter().map(|i| i.name()).collect();
     println!("instruction sets: {}", names.join(", "));
     let mut sound = true;
-    for operation in OPERATIONS {
-        let check =
-            |seed, count| Some(arithmetic::check(operation, seed, count, arguments.unsound));
-        sound &= told(
-            &format!("{operation:?}"),
-            &over(&arguments, arguments.arithmetic, check),
-        );
+    for &operation in Operation::ALL {
+        let unsound = arguments.unsound;
+        let check = |seed, count| Some(arithmetic::check(operation, seed, count, unsound));
+        let report = over(&arguments, arguments.arithmetic, check);
+        sound &= told(&format!("{operation:?}"), &report);
     }
-    for function in FUNCTIONS {
+    for &function in Function::ALL {
         let check = |seed, count| functions::check(function, seed, count, arguments.unsound);
-        sound &= told(
-            &format!("{function:?}"),
-            &over(&arguments, arguments.functions, check),
-        );
+        let report = over(&arguments, arguments.functions, check);
+        sound &= told(&format!("{function:?}"), &report);
     }
     if arguments.rays > 0 && !arguments.unsound {
         sound &= rays::check(arguments.rays, arguments.seed);
@@ -90,16 +86,13 @@ fn over(
 }
 
 fn told(name: &str, report: &Report) -> bool {
+    let example = report.example.as_ref().map(|e| format!("; {e}"));
     println!(
         "{name}: {} checked, {} violated, {} batches with different bits{}",
         report.checked,
         report.violated,
         report.different,
-        report
-            .example
-            .as_ref()
-            .map(|e| format!("; {e}"))
-            .unwrap_or_default()
+        example.unwrap_or_default()
     );
     report.is_good()
 }

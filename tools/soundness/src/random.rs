@@ -7,7 +7,6 @@ use rand_pcg::Pcg64Mcg;
 pub struct Source(Pcg64Mcg);
 
 impl Source {
-    /// The stream of a seed.
     pub fn new(seed: u64) -> Self {
         Self(Pcg64Mcg::seed_from_u64(seed))
     }

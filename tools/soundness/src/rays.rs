@@ -88,20 +88,8 @@ impl Algebra for Big<'_> {
             Binary::Difference => a.sub(b, PRECISION, NEAREST),
             Binary::Product => a.mul(b, PRECISION, NEAREST),
             Binary::Quotient => a.div(b, PRECISION, NEAREST),
-            Binary::Minimum => {
-                if a < b {
-                    a.clone()
-                } else {
-                    b.clone()
-                }
-            }
-            Binary::Maximum => {
-                if a > b {
-                    a.clone()
-                } else {
-                    b.clone()
-                }
-            }
+            Binary::Minimum => if a < b { a } else { b }.clone(),
+            Binary::Maximum => if a > b { a } else { b }.clone(),
             Binary::ArcTangent2 | Binary::Power => astro_float::NAN,
         }
     }
@@ -116,14 +104,8 @@ impl Algebra for Big<'_> {
     }
 }
 
-/// What the rays of a field came to.
-#[derive(Debug, Clone, Copy, Default)]
-struct Count {
-    found: u64,
-    absent: u64,
-    undecided: u64,
-    wrong: u64,
-}
+/// How many rays of a field were found, absent, undecided and, among all of them, wrong.
+type Count = [u64; 4];
 
 /// Checks `count` rays of each field; whether none is wrong.
 pub fn check(count: u64, seed: u64) -> bool {
@@ -149,17 +131,13 @@ pub fn check(count: u64, seed: u64) -> bool {
             .par_iter()
             .zip(&outcomes)
             .map(|(ray, outcome)| case.judged(ray, outcome))
-            .reduce(Count::default, |a, b| Count {
-                found: a.found + b.found,
-                absent: a.absent + b.absent,
-                undecided: a.undecided + b.undecided,
-                wrong: a.wrong + b.wrong,
-            });
+            .reduce(Count::default, |a, b| std::array::from_fn(|i| a[i] + b[i]));
+        let [found, absent, undecided, wrong] = total;
         println!(
-            "{text}: {} found, {} absent, {} undecided, {} wrong; {time:.0} ns a ray",
-            total.found, total.absent, total.undecided, total.wrong
+            "{text}: {found} found, {absent} absent, {undecided} undecided, {wrong} wrong; \
+             {time:.0} ns a ray"
         );
-        good &= total.wrong == 0;
+        good &= wrong == 0;
     }
     good
 }
@@ -178,9 +156,8 @@ impl Case<'_> {
         let outcome = |ray: &Ray| {
             let scaled = ScaledRay::new(ray);
             let local = ladder.double_double.local(&scaled);
-            let found = self
-                .field
-                .first_hit(&local, &self.inside, [0.0, f64::MAX], &search);
+            let limits = [0.0, f64::MAX];
+            let found = self.field.first_hit(&local, &self.inside, limits, &search);
             found.outcome
         };
         Some(rays.iter().map(outcome).collect())
@@ -188,10 +165,7 @@ impl Case<'_> {
 
     fn judged(&self, ray: &Ray, outcome: &Outcome) -> Count {
         let Ok(constants) = Consts::new() else {
-            return Count {
-                wrong: 1,
-                ..Count::default()
-            };
+            return [0, 0, 0, 1];
         };
         let constants = RefCell::new(constants);
         // t is in units of the scaled direction.
@@ -199,28 +173,24 @@ impl Case<'_> {
         let direction = ray.direction / unit;
         let value = |t: f64| self.value(ray.origin, direction, t, &constants);
         let [near, far] = self.stretch(ray.origin, direction);
-        let mut count = Count::default();
-        let good = match outcome {
-            Outcome::Undecided => {
-                count.undecided = 1;
-                true
-            }
+        let (kind, good) = match outcome {
+            Outcome::Undecided => ([0, 0, 1], true),
             Outcome::Absent => {
-                count.absent = 1;
-                near >= far || self.is_clear(&value, near, far, direction.length())
+                let clear = near >= far || self.is_clear(&value, near, far, direction.length());
+                ([0, 1, 0], clear)
             }
             Outcome::Found(root) => {
-                count.found = 1;
                 let [low, high] = root.enclosure;
                 let zero = BigFloat::from_f64(0.0, PRECISION);
                 let signs = [low, high].map(|t| value(t).partial_cmp(&zero));
                 let crosses = signs[0] != signs[1] && !signs.contains(&None);
                 let before = low - 1e-6 * (far - near);
-                crosses && self.is_clear(&value, near, before, direction.length())
+                let clear = self.is_clear(&value, near, before, direction.length());
+                ([1, 0, 0], crosses && clear)
             }
         };
-        count.wrong = u64::from(!good);
-        count
+        let [found, absent, undecided] = kind;
+        [found, absent, undecided, u64::from(!good)]
     }
 
     /// Steps of |f|/L; whether they pass `to` without a change of sign. Where they hardly move, a

@@ -18,38 +18,22 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use etalon::Instructions;
 use etalon::inside::field::expression::Expression;
 use etalon::inside::field::named;
 use etalon::inside::math::affine::Affine;
-use etalon::inside::scene::{FinderChoice, Implicit};
+use etalon::inside::scene::FinderChoice;
 use etalon::inside::shape::Query;
 use etalon::inside::shape::implicit::baseline::SteppingFinder;
 use etalon::inside::shape::implicit::certified::{Certified, Effort, Packet, WIDTH, Workspace};
 use etalon::inside::shape::lanes::implicit::LaneImplicit;
+use etalon::{Instructions, Ray};
 use etalon_doors::shapes::sign_changes;
-use etalon_method::finders::{CLASSES, Oracle};
+use etalon_method::finders::{CLASSES, Oracle, implicit};
 use glam::DVec3;
 use yardstick::Yardstick;
 
 /// Runs over the rays; the best counts.
 const RUNS: usize = 9;
-
-#[derive(Clone, Copy)]
-struct Ray {
-    origin: DVec3,
-    direction: DVec3,
-    t_min: f64,
-}
-
-impl Ray {
-    fn line(&self) -> etalon::Ray {
-        etalon::Ray {
-            origin: self.origin,
-            direction: self.direction,
-        }
-    }
-}
 
 struct Surface {
     degree: u32,
@@ -60,15 +44,9 @@ struct Surface {
 }
 
 impl Surface {
-    fn new(field: Arc<Expression>, half: f64) -> Self {
-        let implicit = Implicit {
-            name: None,
-            field,
-            inside: [DVec3::splat(-half), DVec3::splat(half)],
-            closed: false,
-            finder: FinderChoice::SignChange,
-            steps: 256,
-        };
+    fn new(field: &Arc<Expression>, half: f64) -> Self {
+        let mut implicit = implicit(field, half);
+        implicit.finder = FinderChoice::SignChange;
         let (tape, inside) = (&implicit.field.tape, implicit.inside);
         let placed = Certified::new(tape, inside, &Affine::IDENTITY).unwrap();
         Self {
@@ -95,6 +73,14 @@ fn main() {
     }
 }
 
+fn query(ray: Ray, t_min: f64) -> Query {
+    Query {
+        ray,
+        t_min,
+        t_max: f64::INFINITY,
+    }
+}
+
 /// Seconds of the best run.
 fn best(mut run: impl FnMut() -> u32) -> f64 {
     let mut best = f64::INFINITY;
@@ -106,11 +92,11 @@ fn best(mut run: impl FnMut() -> u32) -> f64 {
     best
 }
 
-fn packets(rays: &[Ray]) -> Vec<Packet> {
-    let packet = |rays: &[Ray]| {
+fn packets(rays: &[Query]) -> Vec<Packet> {
+    let packet = |rays: &[Query]| {
         let mut packet = Packet::default();
-        for (lane, ray) in rays.iter().enumerate() {
-            packet.set(lane, ray.origin, ray.direction, [ray.t_min, f64::INFINITY]);
+        for (lane, Query { ray, t_min, t_max }) in rays.iter().enumerate() {
+            packet.set(lane, ray.origin, ray.direction, [*t_min, *t_max]);
         }
         packet
     };
@@ -142,28 +128,19 @@ const FINDERS: [&str; 5] = [
 ];
 
 /// Seconds by each of [`FINDERS`].
-fn times(surface: &Surface, rays: &[Ray]) -> [f64; 5] {
+fn times(surface: &Surface, rays: &[Query]) -> [f64; 5] {
     let packets = packets(rays);
-    let count = |hits: &dyn Fn(&Ray) -> bool| rays.iter().map(|r| u32::from(hits(r))).sum();
-    let yardstick = best(|| {
-        count(&|r| {
-            surface
-                .yardstick
-                .first_hit(r.origin, r.direction, r.t_min)
-                .is_some()
-        })
-    });
-    let march = best(|| {
-        count(&|r| {
-            let query = Query {
-                ray: r.line(),
-                t_min: r.t_min,
-                t_max: f64::INFINITY,
-            };
-            surface.scalar.first_hit(&query).is_some()
-        })
-    });
-    let lines: Vec<etalon::Ray> = rays.iter().map(Ray::line).collect();
+    let count = |hits: &dyn Fn(&Query) -> bool| rays.iter().map(|r| u32::from(hits(r))).sum();
+    let yardstick = |query: &Query| {
+        let Query { ray, t_min, .. } = *query;
+        let hit = surface
+            .yardstick
+            .first_hit(ray.origin, ray.direction, t_min);
+        hit.is_some()
+    };
+    let yardstick = best(|| count(&yardstick));
+    let march = best(|| count(&|query| surface.scalar.first_hit(query).is_some()));
+    let lines: Vec<Ray> = rays.iter().map(|query| query.ray).collect();
     let set = Instructions::best();
     [
         march,
@@ -178,17 +155,11 @@ fn oracle() {
     let oracle = Oracle::new(None, None).unwrap();
     let mut sums: BTreeMap<(String, String), ([f64; 5], usize)> = BTreeMap::new();
     for shape in &oracle.shapes {
-        let surface = &Surface::new(Arc::clone(&shape.field), shape.half_width);
+        let surface = &Surface::new(&shape.field, shape.half_width);
         let degree = format!("degree {:2}", surface.degree);
         for class in CLASSES {
             let rays = oracle.rays_of(&shape.name, class);
-            let rays: Vec<Ray> = rays
-                .map(|row| Ray {
-                    origin: row.ray.origin,
-                    direction: row.ray.direction,
-                    t_min: row.t_min,
-                })
-                .collect();
+            let rays: Vec<Query> = rays.map(|row| query(row.ray, row.t_min)).collect();
             let times = times(surface, &rays);
             for key in [
                 (class, "all degrees"),
@@ -219,15 +190,15 @@ fn oracle() {
 fn view(name: &str, size: usize, distance: f64, file: &str) {
     let named = named::find(name).unwrap();
     let half = named.half_width;
-    let surface = Surface::new(Arc::new(named.field(&[]).unwrap()), half);
+    let surface = Surface::new(&Arc::new(named.field(&[]).unwrap()), half);
     let far = 4.0 * half * distance;
     let place = |i: usize| (2 * i + 1) as f64 / size as f64 - 1.0;
-    let pixel = |k: usize| Ray {
-        origin: DVec3::new(0.0, -far, 0.0),
-        direction: DVec3::new(place(k % size) * half, far, -place(k / size) * half),
-        t_min: 0.0,
+    let pixel = |k: usize| {
+        let origin = DVec3::new(0.0, -far, 0.0);
+        let direction = DVec3::new(place(k % size) * half, far, -place(k / size) * half);
+        query(Ray { origin, direction }, 0.0)
     };
-    let rays: Vec<Ray> = (0..size * size).map(pixel).collect();
+    let rays: Vec<Query> = (0..size * size).map(pixel).collect();
     let packets = packets(&rays);
     let seconds = certified(&surface, &packets, true);
     let mut workspace = Workspace::default();

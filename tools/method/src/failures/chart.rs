@@ -1,15 +1,12 @@
 //! The failure maps as CSV and as one picture: share of wrong and undecided answers over difficulty, a
 //! row a shape, a column a family, and the time a ray takes beside them.
 
-use std::fmt::Write as _;
-
-use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use super::families::{FAMILIES, Family};
 use super::{Method, Point, SUBJECTS, Subject};
-use crate::finders::Precision;
-use crate::finders::chart::{ChartError, failed};
+use crate::finders::chart::{Area, ChartError, Outcome, failed};
+use crate::finders::{Precision, Score};
 use etalon::inside::scene::FinderChoice;
 
 /// One row a point.
@@ -18,15 +15,13 @@ pub fn csv(points: &[Point]) -> String {
         "shape,family,difficulty,method,precision,planned,rays,wrong,undecided,ns_per_ray\n",
     );
     for point in points {
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "{},{},1e{},{},{},{},{},{},{},{:.1}",
+        text += &format!(
+            "{},{},1e{},{},{},{},{},{},{},{:.1}\n",
             point.subject.name(),
             point.family.name(),
             point.exponent,
             point.method.name(),
-            precision(point.precision),
+            point.precision.name(),
             u8::from(point.method.is_planned()),
             point.score.rays,
             point.score.wrong,
@@ -37,22 +32,12 @@ pub fn csv(points: &[Point]) -> String {
     text
 }
 
-fn precision(precision: Precision) -> &'static str {
-    match precision {
-        Precision::Single => "f32",
-        Precision::Double => "f64",
-    }
-}
-
 const SIZE: (u32, u32) = (1500, 1420);
 /// Height of legend and column titles together, and width of the rows' names.
 const HEADER: u32 = 112;
 const NAMES: u32 = 104;
 const FONT: (&str, i32) = ("sans-serif", 20);
 const SMALL: (&str, i32) = ("sans-serif", 16);
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-type Outcome = Result<(), ChartError>;
 
 /// All points as an SVG picture.
 ///
@@ -133,14 +118,11 @@ fn shares(area: &Area, subject: Subject, family: Family, points: &[&Point]) -> O
             let at = exponents.iter().position(|e| *e == p.exponent);
             at.unwrap_or_default() as f64
         };
-        let wrong: Vec<(f64, f64)> = own
-            .clone()
-            .map(|p| (place(p), p.score.wrong_share()))
-            .collect();
-        let undecided: Vec<(f64, f64)> = own
-            .clone()
-            .map(|p| (place(p), p.score.undecided_share()))
-            .collect();
+        let line = |share: fn(&Score) -> f64| -> Vec<(f64, f64)> {
+            let points = own.clone().map(|p| (place(p), share(&p.score)));
+            points.collect()
+        };
+        let (wrong, undecided) = (line(Score::wrong_share), line(Score::undecided_share));
         let style = colour(*method).stroke_width(if method.is_planned() { 3 } else { 2 });
         chart
             .draw_series(LineSeries::new(wrong, style))
@@ -213,18 +195,7 @@ fn times(area: &Area, subject: Subject, points: &[&Point]) -> Outcome {
 }
 
 fn colour(method: Method) -> RGBColor {
-    match method {
-        Method::Textbook(Precision::Single) | Method::SignChange(Precision::Single) => {
-            RGBColor(230, 150, 60)
-        }
-        Method::Textbook(Precision::Double) | Method::SignChange(Precision::Double) => {
-            RGBColor(190, 60, 40)
-        }
-        Method::Proved(FinderChoice::SphereTrace) => RGBColor(130, 90, 170),
-        Method::Proved(FinderChoice::Interval) => RGBColor(30, 110, 180),
-        Method::Proved(FinderChoice::Polynomial) => RGBColor(40, 140, 80),
-        _ => RGBColor(20, 20, 20),
-    }
+    crate::finders::chart::colour(method.name(), method.precision(Precision::Double))
 }
 
 fn legend(area: &Area) -> Outcome {

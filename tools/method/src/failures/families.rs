@@ -7,11 +7,12 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use super::Subject;
+use crate::finders::implicit;
 use etalon::inside::field::evaluate::Field;
 use etalon::inside::field::expression::{Expression, parse};
 use etalon::inside::field::named;
 use etalon::inside::math::affine::Affine;
-use etalon::inside::scene::{FinderChoice, Implicit};
+use etalon::inside::scene::Implicit;
 use etalon::inside::shape::implicit::certified::Certified;
 use etalon::inside::shape::{Ray, ShapeKind};
 
@@ -40,66 +41,52 @@ pub const FAMILIES: [Family; 5] = [
 ];
 
 impl Family {
-    /// Its name.
-    pub fn name(self) -> &'static str {
+    /// Its name, what its number is, and the first and the last of the numbers as powers of ten, easy
+    /// ones first.
+    fn facts(self) -> (&'static str, &'static str, [i32; 2]) {
         match self {
-            Self::Graze => "graze",
-            Self::Distance => "distance",
-            Self::Condition => "condition",
-            Self::Gap => "gap",
-            Self::Aspect => "aspect",
+            Self::Graze => ("graze", "offset from silhouette", [-1, -14]),
+            Self::Distance => ("distance", "distance / size", [0, 9]),
+            Self::Condition => ("condition", "condition number", [0, 12]),
+            Self::Gap => ("gap", "gap between sheets", [-1, -12]),
+            Self::Aspect => ("aspect", "aspect ratio", [0, 12]),
         }
+    }
+
+    pub fn name(self) -> &'static str {
+        self.facts().0
     }
 
     /// What its number is, for an axis.
     pub fn axis(self) -> &'static str {
-        match self {
-            Self::Graze => "offset from silhouette",
-            Self::Distance => "distance / size",
-            Self::Condition => "condition number",
-            Self::Gap => "gap between sheets",
-            Self::Aspect => "aspect ratio",
-        }
+        self.facts().1
     }
 
     /// Its numbers as powers of ten, easy ones first.
     pub fn exponents(self) -> Vec<i32> {
-        match self {
-            Self::Graze => (1..=14).map(|e| -e).collect(),
-            Self::Distance => (0..=9).collect(),
-            Self::Condition | Self::Aspect => (0..=12).collect(),
-            Self::Gap => (1..=12).map(|e| -e).collect(),
-        }
+        let [first, last] = self.facts().2;
+        let harder = if first < last { 1 } else { -1 };
+        (0..=(last - first).abs())
+            .map(|i| first + harder * i)
+            .collect()
     }
 }
 
-/// An object of a problem.
 #[derive(Debug, Clone)]
 pub struct Body {
     /// Canonical or object coordinates → world.
     pub to_world: Affine,
-    /// The shape, if it is a canonical one.
     pub kind: Option<ShapeKind>,
-    /// The surface, if it is an implicit one.
     pub implicit: Option<Implicit>,
     /// The same with exact arithmetic.
     pub certified: Option<Certified>,
 }
 
-/// A ray.
-#[derive(Debug, Clone, Copy)]
-pub struct Case {
-    /// As all numbers stand.
-    pub ray: Ray,
-}
-
 /// Bodies, and rays that are asked for their first hit.
 #[derive(Debug, Clone)]
 pub struct Problem {
-    /// Objects.
     pub bodies: Vec<Body>,
-    /// Rays.
-    pub cases: Vec<Case>,
+    pub rays: Vec<Ray>,
     /// Size of an object in the world, for what counts as the same hit.
     pub size: f64,
     /// Where a camera would stand that sees the object from as far as the rays come.
@@ -190,11 +177,8 @@ fn touching(kind: ShapeKind, random: &mut Pcg64Mcg) -> [DVec3; 3] {
         }
         ShapeKind::Disk => {
             let n = DVec3::new(cosine, sine, 0.0);
-            [
-                n,
-                n,
-                mixed(DVec3::Z, DVec3::new(-sine, cosine, 0.0), random),
-            ]
+            let line = mixed(DVec3::Z, DVec3::new(-sine, cosine, 0.0), random);
+            [n, n, line]
         }
         ShapeKind::Rectangle => {
             let line = mixed(DVec3::Z, DVec3::Y, random);
@@ -229,7 +213,7 @@ impl Problem {
         };
         let mut problem = Self {
             bodies,
-            cases: Vec::new(),
+            rays: Vec::new(),
             size: 2.0 * half,
             camera: DVec3::Z * (far * half + 2.0 * half),
         };
@@ -243,8 +227,7 @@ impl Problem {
             } else {
                 (to_world.point(o), to_world.vector(d))
             };
-            let ray = Ray { origin, direction };
-            problem.cases.push(Case { ray });
+            problem.rays.push(Ray { origin, direction });
         }
         Some(problem)
     }
@@ -332,7 +315,7 @@ fn bodies(
     model: Option<&Model>,
 ) -> Option<Vec<Body>> {
     if let Some(model) = model {
-        let implicit = model.implicit();
+        let implicit = implicit(&model.expression, model.half);
         let certified = Certified::new(&implicit.field.tape, implicit.inside, to_world).ok()??;
         return Some(vec![Body {
             to_world: *to_world,
@@ -382,17 +365,6 @@ impl Model {
             expression: Arc::new(expression),
             half: named.half_width,
         })
-    }
-
-    fn implicit(&self) -> Implicit {
-        Implicit {
-            name: None,
-            field: Arc::clone(&self.expression),
-            inside: [DVec3::splat(-self.half), DVec3::splat(self.half)],
-            closed: false,
-            finder: FinderChoice::Auto,
-            steps: 256,
-        }
     }
 
     /// A point of the surface, its normal and a tangent.

@@ -16,28 +16,23 @@ mod plan;
 pub mod textbook;
 pub mod truth;
 
-use std::fmt::Write as _;
 use std::time::Instant;
 
 use glam::DVec3;
 
-use crate::finders::{Contestant, Precision, Ready, Score};
+use crate::finders::{Answer, Contestant, Precision, Ready, Score};
 use etalon::inside::math::affine::Affine;
 use etalon::inside::math::lanes::Scalar;
 use etalon::inside::scene::FinderChoice;
 use etalon::inside::shape::implicit::certified::Workspace;
-use etalon::inside::shape::implicit::placed::{ImplicitAnswer, PlacedImplicit};
-use etalon::inside::shape::{Placed, Query, Ray, ShapeKind, Start, Tally};
-use families::{Body, Case, FAMILIES, Family, Problem};
+use etalon::inside::shape::{Placed, Ray, ShapeKind, Start, Tally};
+use families::{Body, FAMILIES, Family, Problem};
 use textbook::Textbook;
 use truth::First;
 
-/// What is hit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Subject {
-    /// A canonical shape.
     Canonical(ShapeKind),
-    /// A named implicit surface.
     Implicit(&'static str),
 }
 
@@ -55,7 +50,6 @@ pub const SUBJECTS: [Subject; 9] = [
 ];
 
 impl Subject {
-    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Canonical(kind) => kind.name(),
@@ -117,7 +111,6 @@ const RUNS: usize = 3;
 const STEPS: u32 = 256;
 
 impl Method {
-    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Textbook(_) => "textbook",
@@ -145,17 +138,12 @@ impl Method {
 /// A method on one shape, family and difficulty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
-    /// What is hit.
     pub subject: Subject,
-    /// Which rays.
     pub family: Family,
     /// Their difficulty as a power of ten.
     pub exponent: i32,
-    /// How hits are found.
     pub method: Method,
-    /// In which precision.
     pub precision: Precision,
-    /// What came of it.
     pub score: Score,
 }
 
@@ -185,16 +173,11 @@ pub fn summary(points: &[Point]) -> String {
             });
             let all = own.fold(Score::default(), |sum, p| sum.joined(p.score));
             let precision = match method {
-                Method::Textbook(Precision::Single) | Method::SignChange(Precision::Single) => {
-                    "f32"
-                }
                 Method::Ladder => "as planned",
-                _ => "f64",
+                other => other.precision(Precision::Double).name(),
             };
-            // Writing to a string cannot fail.
-            let _ = writeln!(
-                text,
-                "{kind:9} {:12} {precision:10} wrong {:6} undecided {:6} of {:6}, {:8.0} ns a ray",
+            text += &format!(
+                "{kind:9} {:12} {precision:10} wrong {:6} undecided {:6} of {:6}, {:8.0} ns a ray\n",
                 method.name(),
                 all.wrong,
                 all.undecided,
@@ -212,7 +195,7 @@ pub fn points(subject: Subject, family: Family, exponent: i32, rays: usize) -> V
         return Vec::new();
     };
     let planned = plan::precision(subject, &problem);
-    let judged = [Precision::Single, Precision::Double].map(|p| Judged::new(subject, &problem, p));
+    let judged = Precision::ALL.map(|p| Judged::new(subject, &problem, p));
     let methods = subject.methods().iter();
     methods
         .map(|&method| {
@@ -252,34 +235,23 @@ struct Judged {
 
 impl Judged {
     fn new(subject: Subject, problem: &Problem, precision: Precision) -> Self {
-        let rounded = |x: f64| match precision {
-            Precision::Single => f64::from(x as f32),
-            Precision::Double => x,
-        };
-        let rays = problem.cases.iter().map(|case| {
+        let rounded = |v: DVec3| v.to_array().map(|x| precision.rounded(x)).into();
+        let rays = problem.rays.iter().map(|ray| {
             let ray = Ray {
-                origin: case.ray.origin.to_array().map(rounded).into(),
-                direction: case.ray.direction.to_array().map(rounded).into(),
+                origin: rounded(ray.origin),
+                direction: rounded(ray.direction),
             };
-            (ray, truth::first(subject, &problem.bodies, &Case { ray }))
+            (ray, truth::first(subject, &problem.bodies, &ray))
         });
         Self {
             rays: rays.collect(),
-            roundoff: match precision {
-                Precision::Single => f32::ROUNDOFF,
-                Precision::Double => f64::ROUNDOFF,
-            },
+            roundoff: precision.roundoff(),
         }
     }
 }
 
-/// What a method says.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Said {
-    Hit { t: f64, body: usize },
-    Miss,
-    Undecided,
-}
+/// What a method claims of a ray, and of which body.
+type Claim = (Answer, usize);
 
 fn score(method: Method, problem: &Problem, judged: &Judged, precision: Precision) -> Score {
     let Some(mut finder) = Asked::new(method, problem) else {
@@ -302,14 +274,15 @@ fn score(method: Method, problem: &Problem, judged: &Judged, precision: Precisio
         said.extend(answers);
     }
     for ((ray, first), said) in judged.rays.iter().zip(said) {
-        score.undecided += u32::from(said == Said::Undecided);
-        let right = match (said, first) {
-            (Said::Undecided, _) | (Said::Miss, None) => true,
-            (Said::Hit { t, body }, Some(first)) if method == Method::Ladder => {
+        score.undecided += u32::from(said.0 == Answer::Undecided);
+        let (answer, body) = said;
+        let right = match (answer, first) {
+            (Answer::Undecided, _) | (Answer::Miss, None) => true,
+            (Answer::Hit(t), Some(first)) if method == Method::Ladder => {
                 let place = problem.placed(ray, t, precision);
                 body == first.body && problem.is_kept_apart(ray, first, place)
             }
-            (Said::Hit { t, body }, Some(first)) => {
+            (Answer::Hit(t), Some(first)) => {
                 // Eight roundings of t are what any arithmetic may lose at its end.
                 let near = 8.0 * judged.roundoff * first.t.abs().max(t.abs());
                 let within = (0.5 * first.gap).min(problem.same(ray));
@@ -352,38 +325,34 @@ enum Asked {
     Single(Vec<Textbook<f32>>),
     Double(Vec<Textbook<f64>>),
     Ladder(Vec<Placed>),
-    Stepping(Ready, Affine, Precision),
-    Proved(Box<PlacedImplicit>, Workspace),
+    /// What steps is asked about rays in object coordinates.
+    Finder(Box<(Ready, Workspace, Affine, Precision)>),
 }
 
 impl Asked {
     fn new(method: Method, problem: &Problem) -> Option<Self> {
         let bodies = &problem.bodies;
-        let body: &Body = bodies.first()?;
-        Some(match method {
-            Method::Textbook(Precision::Single) => Self::Single(textbooks(problem)?),
-            Method::Textbook(Precision::Double) => Self::Double(textbooks(problem)?),
+        let contestant = match method {
+            Method::Textbook(Precision::Single) => return textbooks(problem).map(Self::Single),
+            Method::Textbook(Precision::Double) => return textbooks(problem).map(Self::Double),
             Method::Ladder => {
-                let placed = bodies
-                    .iter()
-                    .map(|b| Placed::new(b.kind?, &b.to_world).ok());
-                Self::Ladder(placed.collect::<Option<_>>()?)
+                let placed = bodies.iter();
+                let placed = placed.map(|b| Placed::new(b.kind?, &b.to_world).ok());
+                return placed.collect::<Option<_>>().map(Self::Ladder);
             }
-            Method::SignChange(precision) => {
-                let implicit = body.implicit.as_ref()?;
-                let ready = Contestant::SignChange(precision, STEPS).of(implicit)?;
-                Self::Stepping(ready, textbook::inverse(&body.to_world), precision)
-            }
-            Method::Proved(finder) => {
-                let mut implicit = body.implicit.clone()?;
-                implicit.finder = finder;
-                let placed = PlacedImplicit::new(&implicit, &body.to_world).ok()?;
-                Self::Proved(Box::new(placed), Workspace::default())
-            }
-        })
+            Method::SignChange(precision) => Contestant::SignChange(precision, STEPS),
+            Method::Proved(finder) => Contestant::Proved(finder),
+        };
+        let Body {
+            to_world, implicit, ..
+        } = bodies.first()?;
+        let ready = contestant.of(implicit.as_ref()?, to_world)?;
+        let inverse = textbook::inverse(to_world);
+        let asked = (ready, Workspace::default(), inverse, contestant.precision());
+        Some(Self::Finder(Box::new(asked)))
     }
 
-    fn first_hit(&mut self, ray: &Ray) -> Said {
+    fn first_hit(&mut self, ray: &Ray) -> Claim {
         match self {
             Self::Single(all) => nearest(all.iter().map(|one| one.first_hit(ray))),
             Self::Double(all) => nearest(all.iter().map(|one| one.first_hit(ray))),
@@ -395,28 +364,14 @@ impl Asked {
                 });
                 nearest(hits)
             }
-            Self::Stepping(ready, inverse, precision) => {
-                let local = match precision {
-                    Precision::Single => moved::<f32>(inverse, ray),
-                    Precision::Double => moved::<f64>(inverse, ray),
+            Self::Finder(asked) => {
+                let (ready, workspace, inverse, precision) = &mut **asked;
+                let ray = match (&ready, precision) {
+                    (Ready::Proved(_), _) => *ray,
+                    (_, Precision::Single) => moved::<f32>(inverse, ray),
+                    (_, Precision::Double) => moved::<f64>(inverse, ray),
                 };
-                match ready.first_hit(&local, 0.0, &mut Workspace::default()) {
-                    crate::finders::Answer::Hit(t) => Said::Hit { t, body: 0 },
-                    crate::finders::Answer::Miss => Said::Miss,
-                    crate::finders::Answer::Undecided => Said::Undecided,
-                }
-            }
-            Self::Proved(placed, workspace) => {
-                let query = Query {
-                    ray: *ray,
-                    t_min: 0.0,
-                    t_max: f64::INFINITY,
-                };
-                match placed.first_crossing(&query, workspace, &mut Tally::default()) {
-                    ImplicitAnswer::Found(hit) => Said::Hit { t: hit.t, body: 0 },
-                    ImplicitAnswer::Absent => Said::Miss,
-                    ImplicitAnswer::Undecided => Said::Undecided,
-                }
+                (ready.first_hit(&ray, 0.0, workspace), 0)
             }
         }
     }
@@ -437,13 +392,9 @@ fn moved<T: Scalar>(inverse: &Affine, ray: &Ray) -> Ray {
 }
 
 /// The smallest t, and whose it is.
-fn nearest(hits: impl Iterator<Item = Option<f64>>) -> Said {
-    let mut first = Said::Miss;
-    for (body, hit) in hits.enumerate() {
-        let before = |t: f64| !matches!(first, Said::Hit { t: known, .. } if known <= t);
-        if let Some(t) = hit.filter(|t| before(*t)) {
-            first = Said::Hit { t, body };
-        }
-    }
-    first
+fn nearest(hits: impl Iterator<Item = Option<f64>>) -> Claim {
+    let hits = hits.enumerate().filter_map(|(body, t)| Some((t?, body)));
+    // The first of equal ones.
+    let first = hits.reduce(|a, b| if a.0 <= b.0 { a } else { b });
+    first.map_or((Answer::Miss, 0), |(t, body)| (Answer::Hit(t), body))
 }

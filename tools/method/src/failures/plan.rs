@@ -1,12 +1,10 @@
 //! What the plan would choose for a scene of a problem's bodies.
 
-use std::path::Path;
-
 use super::families::Problem;
 use super::{Precision, Subject};
-use etalon::Overrides;
-use etalon::inside::plan::choose::{self, choose};
-use etalon::inside::scene::{Shape, parse};
+use etalon::Scene;
+use etalon::inside::plan::choose::choose;
+use etalon::inside::scene::Shape;
 use etalon::inside::shape::ShapeKind;
 
 /// Pixels along the picture's height, which the object about fills.
@@ -16,13 +14,13 @@ const PIXELS: u32 = 256;
 pub fn precision(subject: Subject, problem: &Problem) -> Precision {
     let object = "[[object]]\nshape = \"sphere\"\nmaterial = \"grey\"\n";
     let text = format!(
-        "[camera]\nfrom = [0, 0, {:?}]\nto = [0, 0, 0]\northographic = {:?}\n\
-         [image]\nsize = [{PIXELS}, {PIXELS}]\nspp = 1\n[materials]\ngrey = {{ diffuse = 0.5 }}\n{}",
+        "camera = {{ from = [0, 0, {:?}], to = [0, 0, 0], orthographic = {:?} }}\n\
+         image = {{ size = [{PIXELS}, {PIXELS}], spp = 1 }}\nmaterials.grey = {{ diffuse = 0.5 }}\n{}",
         problem.camera.z,
         1.5 * problem.size,
         object.repeat(problem.bodies.len())
     );
-    let Ok(mut scene) = parse("failures", &text, Path::new(""), &Overrides::default()) else {
+    let Ok(mut scene) = Scene::parse(&text) else {
         return Precision::Double;
     };
     for (object, body) in scene.objects.iter_mut().zip(&problem.bodies) {
@@ -33,8 +31,5 @@ pub fn precision(subject: Subject, problem: &Problem) -> Precision {
             (_, None) => Shape::Canonical(ShapeKind::Sphere),
         };
     }
-    match choose(&scene, false).map(|choices| choices.precision) {
-        Ok(choose::Precision::Single) => Precision::Single,
-        _ => Precision::Double,
-    }
+    choose(&scene, false).map_or(Precision::Double, |choices| choices.precision)
 }

@@ -14,7 +14,6 @@ pub struct Textbook<T> {
     rows: [[T; 4]; 3],
 }
 
-/// A vector.
 type Three<T> = [T; 3];
 
 fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
@@ -49,7 +48,6 @@ pub fn local<T: Scalar>(rows: &[[T; 4]; 3], ray: &Ray) -> [Three<T>; 2] {
 }
 
 impl<T: Scalar> Textbook<T> {
-    /// Rounds the inverse.
     pub fn new(kind: ShapeKind, to_world: &Affine) -> Self {
         let rows = inverse(to_world).rows.map(|row| row.map(T::from_f64));
         Self { kind, rows }

@@ -6,19 +6,17 @@
 use std::cmp::Ordering;
 
 use super::Subject;
-use super::families::{Body, Case};
+use super::families::Body;
 use etalon::inside::math::exact::Exact;
 use etalon::inside::math::number::{Number, dot, power_of_two};
 use etalon::inside::shape::ladder::{Ladder, ScaledRay};
 use etalon::inside::shape::line::LocalRay;
 use etalon::inside::shape::{Ray, ShapeKind};
 
-/// The first hit of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct First {
     /// Where, in units of the direction.
     pub t: f64,
-    /// On which body.
     pub body: usize,
     /// From it to the next crossing of any body; infinite where there is none.
     pub gap: f64,
@@ -27,12 +25,12 @@ pub struct First {
 }
 
 /// The first hit with t ≥ 0; `None` where there is none.
-pub fn first(subject: Subject, bodies: &[Body], case: &Case) -> Option<First> {
+pub fn first(subject: Subject, bodies: &[Body], ray: &Ray) -> Option<First> {
     let mut all: Vec<(Exact, usize)> = Vec::new();
     for (index, body) in bodies.iter().enumerate() {
         let crossings = match subject {
-            Subject::Canonical(kind) => canonical(kind, body, &case.ray),
-            Subject::Implicit(_) => implicit(body, &case.ray),
+            Subject::Canonical(kind) => canonical(kind, body, ray),
+            Subject::Implicit(_) => implicit(body, ray),
         };
         all.extend(crossings.into_iter().map(|t| (t, index)));
     }
@@ -64,11 +62,8 @@ fn implicit(body: &Body, ray: &Ray) -> Vec<Exact> {
         let after = root.enclosure[1].next_up();
         certified.exactly(ray, [after, f64::INFINITY])
     });
-    [first, second]
-        .into_iter()
-        .flatten()
-        .map(|root| Exact::of(root.t))
-        .collect()
+    let both = [first, second].into_iter().flatten();
+    both.map(|root| Exact::of(root.t)).collect()
 }
 
 /// Where a ray enters and leaves a canonical shape, in units of its direction.
@@ -110,11 +105,9 @@ fn flat(kind: ShapeKind, line: &LocalRay<Exact>) -> Option<[Exact; 2]> {
     });
     let edge = line.scale.times(dz);
     let square = |x: &Exact| x.times(x);
-    let within = |x: &Exact| order(&square(x), &square(&edge)) != Ordering::Greater;
+    let within = |x: &Exact| order(&square(x), &square(&edge)).is_le();
     let inside = match kind {
-        ShapeKind::Disk => {
-            order(&square(&x).plus(&square(&y)), &square(&edge)) != Ordering::Greater
-        }
+        ShapeKind::Disk => order(&square(&x).plus(&square(&y)), &square(&edge)).is_le(),
         ShapeKind::Rectangle => within(&x) && within(&y),
         _ => true,
     };
@@ -131,7 +124,7 @@ fn slab(line: &LocalRay<Exact>, axis: usize) -> Option<[Exact; 2]> {
     }
     let face = |sign: f64| line.scale.times(&Exact::of(sign)).minus(o).divided_by(d);
     let (a, b) = (face(-1.0), face(1.0));
-    Some(if order(&a, &b) == Ordering::Greater {
+    Some(if order(&a, &b).is_gt() {
         [b, a]
     } else {
         [a, b]
@@ -161,15 +154,7 @@ fn common(span: Option<[Exact; 2]>, [low, high]: [Exact; 2]) -> Option<[Exact; 2
     let Some([a, b]) = span else {
         return Some([low, high]);
     };
-    let low = if order(&a, &low) == Ordering::Less {
-        low
-    } else {
-        a
-    };
-    let high = if order(&b, &high) == Ordering::Greater {
-        high
-    } else {
-        b
-    };
-    (order(&low, &high) != Ordering::Greater).then_some([low, high])
+    let low = if order(&a, &low).is_lt() { low } else { a };
+    let high = if order(&b, &high).is_gt() { high } else { b };
+    (order(&low, &high).is_le()).then_some([low, high])
 }

@@ -1,7 +1,5 @@
 //! The results as CSV and as a picture: share wrong and share undecided over time a ray.
 
-use std::fmt::Write as _;
-
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
@@ -15,14 +13,12 @@ pub fn csv(results: &[Result]) -> String {
     for result in results {
         let classes = CLASSES.into_iter().zip(result.scores);
         for (class, score) in classes.chain([("all", result.all())]) {
-            let steps = result.contestant.steps();
-            let steps = steps.map(|s| s.to_string()).unwrap_or_default();
-            // Writing to a string cannot fail.
-            let _ = writeln!(
-                text,
-                "{},{},{steps},{class},{},{},{},{:.6},{:.6},{:.1}",
-                result.contestant.name(),
-                result.contestant.precision(),
+            let contestant = result.contestant;
+            text += &format!(
+                "{},{},{},{class},{},{},{},{:.6},{:.6},{:.1}\n",
+                contestant.name(),
+                contestant.precision().name(),
+                contestant.steps(),
                 score.rays,
                 score.wrong,
                 score.undecided,
@@ -74,13 +70,11 @@ pub fn svg(results: &[Result]) -> std::result::Result<String, ChartError> {
     Ok(text)
 }
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-fn draw(
-    area: &Area,
-    title: &str,
-    scores: &[(Contestant, Score)],
-) -> std::result::Result<(), ChartError> {
+pub(crate) type Outcome = std::result::Result<(), ChartError>;
+
+fn draw(area: &Area, title: &str, scores: &[(Contestant, Score)]) -> Outcome {
     let mut chart = ChartBuilder::on(area)
         .caption(title, ("sans-serif", 18))
         .margin(6)
@@ -99,18 +93,18 @@ fn draw(
         .y_label_formatter(&|y| format!("{:.0e}", y))
         .draw()
         .map_err(failed)?;
-    for precision in [Precision::Single, Precision::Double] {
+    for precision in Precision::ALL {
         let sweep = scores.iter().filter(
             |(contestant, _)| matches!(contestant, Contestant::SignChange(p, _) if *p == precision),
         );
         let line: Vec<(f64, f64)> = sweep.map(|(_, score)| point(score, false)).collect();
-        let colour = colour(Contestant::SignChange(precision, 0));
+        let colour = colour("sign-change", precision);
         chart
             .draw_series(LineSeries::new(line, colour))
             .map_err(failed)?;
     }
     for (contestant, score) in scores {
-        let colour = colour(*contestant);
+        let colour = colour(contestant.name(), contestant.precision());
         let wrong = Circle::new(point(score, false), 4, colour.filled());
         chart.draw_series([wrong]).map_err(failed)?;
         if score.undecided > 0 {
@@ -130,10 +124,11 @@ fn point(score: &Score, undecided: bool) -> (f64, f64) {
     (score.nanoseconds_a_ray(), share.max(NONE))
 }
 
-fn colour(contestant: Contestant) -> RGBColor {
-    match (contestant.name(), contestant.precision()) {
-        ("sign-change", "f32") => RGBColor(230, 150, 60),
-        ("sign-change", _) => RGBColor(190, 60, 40),
+/// The colour of a method in all charts.
+pub(crate) fn colour(name: &str, precision: Precision) -> RGBColor {
+    match (name, precision) {
+        ("textbook" | "sign-change", Precision::Single) => RGBColor(230, 150, 60),
+        ("textbook" | "sign-change", _) => RGBColor(190, 60, 40),
         ("sphere-trace", _) => RGBColor(130, 90, 170),
         ("interval", _) => RGBColor(30, 110, 180),
         ("polynomial", _) => RGBColor(40, 140, 80),
@@ -141,25 +136,16 @@ fn colour(contestant: Contestant) -> RGBColor {
     }
 }
 
-fn legend(area: &Area) -> std::result::Result<(), ChartError> {
-    let entries = [
-        (
-            "sign-change f32 (100 to 10 000 steps)",
-            "sign-change",
-            "f32",
-        ),
-        ("sign-change f64", "sign-change", "f64"),
-        ("sphere-trace", "sphere-trace", "f64"),
-        ("interval", "interval", "f64"),
-        ("polynomial", "polynomial", "f64"),
-        ("auto", "auto", "f64"),
+fn legend(area: &Area) -> Outcome {
+    let [single, double] = Precision::ALL.map(|precision| colour("sign-change", precision));
+    let proved = ["sphere-trace", "interval", "polynomial", "auto"];
+    let proved = proved.map(|name| (name, colour(name, Precision::Double)));
+    let stepping = [
+        ("sign-change f32 (100 to 10 000 steps)", single),
+        ("sign-change f64", double),
     ];
     let mut x = 30;
-    for (text, name, precision) in entries {
-        let shade = super::CONTESTANTS
-            .into_iter()
-            .find(|c| c.name() == name && c.precision() == precision)
-            .map_or(BLACK, colour);
+    for (text, shade) in stepping.into_iter().chain(proved) {
         area.draw(&Circle::new((x, 20), 5, shade.filled()))
             .map_err(failed)?;
         area.draw(&Text::new(text, (x + 10, 12), ("sans-serif", 15)))

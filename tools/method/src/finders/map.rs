@@ -21,11 +21,8 @@ const COARSE: u32 = 64;
 /// How many pixels of a finder's map are what.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MapCount {
-    /// Who.
     pub contestant: Contestant,
-    /// Pixels that are wrong.
     pub wrong: u32,
-    /// Pixels it could not decide.
     pub undecided: u32,
 }
 

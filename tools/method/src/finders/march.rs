@@ -11,7 +11,6 @@ use etalon::inside::math::lanes::Scalar;
 use etalon::inside::root::sign_change::first_change;
 use etalon::inside::shape::Ray;
 
-/// A surface to step along.
 pub struct March<T> {
     tape: Tape,
     constants: Vec<T>,

@@ -5,17 +5,23 @@ pub mod chart;
 pub mod map;
 mod march;
 mod oracle;
+mod shapes;
 
+use std::sync::Arc;
 use std::time::Instant;
 
+use etalon::inside::field::expression::Expression;
 use etalon::inside::math::affine::Affine;
+pub use etalon::inside::math::instructions::Precision;
 use etalon::inside::scene::{FinderChoice, Implicit};
 use etalon::inside::shape::implicit::certified::Workspace;
 use etalon::inside::shape::implicit::placed::{ImplicitAnswer, PlacedImplicit};
 use etalon::inside::shape::{Query, Ray, Tally};
+use glam::DVec3;
 
 use march::March;
-pub use oracle::{Oracle, OracleError, OracleRay, OracleShape};
+pub use oracle::{Oracle, OracleError, OracleRay};
+pub use shapes::OracleShape;
 
 /// The classes of rays, in the order of the chart's panels.
 pub const CLASSES: [&str; 7] = [
@@ -27,15 +33,6 @@ pub const CLASSES: [&str; 7] = [
     "start_on",
     "far",
 ];
-
-/// Arithmetic of a finder that proves nothing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Precision {
-    /// f32.
-    Single,
-    /// f64.
-    Double,
-}
 
 /// A finder that takes part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,7 +60,6 @@ pub const CONTESTANTS: [Contestant; 12] = [
 ];
 
 impl Contestant {
-    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::SignChange(..) => "sign-change",
@@ -71,59 +67,62 @@ impl Contestant {
         }
     }
 
-    /// Name of the arithmetic it begins with.
-    pub fn precision(self) -> &'static str {
+    /// The arithmetic it begins with.
+    pub fn precision(self) -> Precision {
         match self {
-            Self::SignChange(Precision::Single, _) => "f32",
-            _ => "f64",
+            Self::SignChange(precision, _) => precision,
+            Self::Proved(_) => Precision::Double,
         }
     }
 
-    /// Steps, of the one that steps.
-    pub fn steps(self) -> Option<u32> {
+    /// Steps, of the one that steps, and nothing of the others.
+    pub fn steps(self) -> String {
         match self {
-            Self::SignChange(_, steps) => Some(steps),
-            Self::Proved(_) => None,
+            Self::SignChange(_, steps) => steps.to_string(),
+            Self::Proved(_) => String::new(),
         }
+    }
+
+    pub fn is_proved(self) -> bool {
+        matches!(self, Self::Proved(_))
     }
 }
 
-/// What a finder says of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Answer {
-    /// The first hit is there.
     Hit(f64),
-    /// There is none.
     Miss,
-    /// It cannot tell.
     Undecided,
+}
+
+/// A surface within the cube [−half, half]³, with the finder that the plan takes.
+pub fn implicit(field: &Arc<Expression>, half: f64) -> Implicit {
+    Implicit {
+        name: None,
+        field: Arc::clone(field),
+        inside: [DVec3::splat(-half), DVec3::splat(half)],
+        closed: false,
+        finder: FinderChoice::Auto,
+        steps: 256,
+    }
 }
 
 /// A surface ready for one contestant.
 pub enum Ready {
-    /// To be stepped along in f32.
     Single(March<f32>),
-    /// To be stepped along in f64.
     Double(March<f64>),
-    /// To be asked for proofs.
     Proved(Box<PlacedImplicit>),
 }
 
 impl Contestant {
     /// Prepares a surface; `None` where it cannot be placed.
     pub fn ready(self, shape: &OracleShape) -> Option<Ready> {
-        self.of(&Implicit {
-            name: None,
-            field: shape.field.clone(),
-            inside: shape.inside(),
-            closed: false,
-            finder: FinderChoice::Auto,
-            steps: 1,
-        })
+        self.of(&implicit(&shape.field, shape.half_width), &Affine::IDENTITY)
     }
 
-    /// Prepares a surface whose box is a cube about the origin, not moved.
-    pub fn of(self, implicit: &Implicit) -> Option<Ready> {
+    /// Prepares a surface whose box is a cube about the origin; what steps does so in object
+    /// coordinates.
+    pub fn of(self, implicit: &Implicit, to_world: &Affine) -> Option<Ready> {
         let (tape, half_width) = (&implicit.field.tape, implicit.inside[1].x);
         Some(match self {
             Self::SignChange(Precision::Single, steps) => {
@@ -137,7 +136,7 @@ impl Contestant {
                     finder,
                     ..implicit.clone()
                 };
-                let placed = PlacedImplicit::new(&implicit, &Affine::IDENTITY);
+                let placed = PlacedImplicit::new(&implicit, to_world);
                 Ready::Proved(Box::new(placed.ok()?))
             }
         })
@@ -169,7 +168,6 @@ impl Ready {
 /// What a contestant did with the rays of a class.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Score {
-    /// Rays.
     pub rays: u32,
     /// Answers that are not the truth.
     pub wrong: u32,
@@ -180,22 +178,18 @@ pub struct Score {
 }
 
 impl Score {
-    /// Share of wrong answers.
     pub fn wrong_share(&self) -> f64 {
         f64::from(self.wrong) / f64::from(self.rays.max(1))
     }
 
-    /// Share of undecided rays.
     pub fn undecided_share(&self) -> f64 {
         f64::from(self.undecided) / f64::from(self.rays.max(1))
     }
 
-    /// Time a ray, ns.
     pub fn nanoseconds_a_ray(&self) -> f64 {
         self.nanoseconds / f64::from(self.rays.max(1))
     }
 
-    /// Both together.
     pub fn joined(self, other: Self) -> Self {
         Self {
             rays: self.rays + other.rays,
@@ -209,14 +203,12 @@ impl Score {
 /// One contestant's scores by class.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Result {
-    /// Who.
     pub contestant: Contestant,
     /// By class, as in [`CLASSES`].
     pub scores: [Score; CLASSES.len()],
 }
 
 impl Result {
-    /// Over all classes.
     pub fn all(&self) -> Score {
         self.scores
             .iter()

@@ -1,12 +1,11 @@
 //! Rays with known first hits, from files or as they came with the program.
 
 use std::collections::HashMap;
-use std::sync::Arc;
 
 use glam::DVec3;
 
 use super::Answer;
-use etalon::inside::field::expression::{Expression, Parameter, parse, rational};
+use super::shapes::{OracleShape, read_shapes};
 use etalon::inside::shape::Ray;
 
 /// Rays and surfaces that come with the program.
@@ -16,53 +15,26 @@ const SHAPES: &str = include_str!("../../../../tests/data/implicit_shapes.csv");
 /// Why a set of rays cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OracleError {
-    /// A column is missing.
     #[error("the heading has no column \"{0}\"")]
     Column(&'static str),
-    /// A line cannot be read.
-    #[error("line {line}: {what}")]
-    Line {
-        /// Counted from 1.
-        line: usize,
-        /// What is wrong.
-        what: String,
-    },
-    /// There is no ray.
+    /// Counted from 1.
+    #[error("line {0}: {1}")]
+    Line(usize, String),
     #[error("there are no rays")]
     Empty,
 }
 
-/// A surface in a cube.
-#[derive(Debug, Clone)]
-pub struct OracleShape {
-    /// What rays call it.
-    pub name: String,
-    /// The clip cube is [−h, h]³.
-    pub half_width: f64,
-    /// The field.
-    pub field: Arc<Expression>,
+fn at(line: usize, what: impl ToString) -> OracleError {
+    OracleError::Line(line, what.to_string())
 }
 
-impl OracleShape {
-    /// The clip cube's corners.
-    pub fn inside(&self) -> [DVec3; 2] {
-        [
-            DVec3::splat(-self.half_width),
-            DVec3::splat(self.half_width),
-        ]
-    }
-}
-
-/// A ray with its truth.
 #[derive(Debug, Clone)]
 pub struct OracleRay {
     shape: String,
     class: String,
-    /// The ray.
     pub ray: Ray,
     /// Hits count after this, and at it where it is 0.
     pub t_min: f64,
-    /// The first one.
     pub first: Option<f64>,
     /// From it to the next one.
     pub gap: f64,
@@ -83,10 +55,8 @@ impl OracleRay {
     }
 }
 
-/// Surfaces and rays.
 #[derive(Debug, Clone)]
 pub struct Oracle {
-    /// Surfaces.
     pub shapes: Vec<OracleShape>,
     rays: Vec<OracleRay>,
 }
@@ -97,7 +67,8 @@ impl Oracle {
     /// # Errors
     /// [`OracleError`] where a table has no rays, columns are missing or a line cannot be read.
     pub fn new(rays: Option<&str>, shapes: Option<&str>) -> Result<Self, OracleError> {
-        let shapes = read_shapes(shapes.unwrap_or(SHAPES))?;
+        let shapes =
+            read_shapes(shapes.unwrap_or(SHAPES)).map_err(|(line, what)| at(line, what))?;
         let rays = read_rays(rays.unwrap_or(RAYS), &shapes)?;
         if rays.is_empty() {
             return Err(OracleError::Empty);
@@ -118,51 +89,6 @@ impl Oracle {
     }
 }
 
-fn at(line: usize, what: impl ToString) -> OracleError {
-    OracleError::Line {
-        line,
-        what: what.to_string(),
-    }
-}
-
-/// Lines `name;half_width;degree;expression[, NAME=value]` below a heading.
-fn read_shapes(text: &str) -> Result<Vec<OracleShape>, OracleError> {
-    let lines = text.lines().enumerate().skip(1);
-    let lines = lines.filter(|(_, line)| !line.trim().is_empty());
-    lines
-        .map(|(i, line)| {
-            let fields: Vec<&str> = line.split(';').collect();
-            let &[name, half, _, written] = fields.as_slice() else {
-                return Err(at(i + 1, "not name;half_width;degree;expression"));
-            };
-            let half_width: f64 = half.parse().map_err(|e| at(i + 1, e))?;
-            if !(half_width > 0.0 && half_width.is_finite()) {
-                return Err(at(i + 1, "the half width is not positive"));
-            }
-            let (expression, parameters) = with_parameters(written);
-            let field = parse(expression, &parameters).map_err(|e| at(i + 1, e))?;
-            Ok(OracleShape {
-                name: name.to_owned(),
-                half_width,
-                field: Arc::new(field),
-            })
-        })
-        .collect()
-}
-
-fn with_parameters(written: &str) -> (&str, Vec<Parameter>) {
-    let mut parts = written.split(", ");
-    let expression = parts.next().unwrap_or_default();
-    let parameters = parts.filter_map(|part| {
-        let (name, value) = part.split_once('=')?;
-        Some(Parameter {
-            name: name.trim().to_owned(),
-            value: rational(value.trim())?,
-        })
-    });
-    (expression, parameters.collect())
-}
-
 fn read_rays(text: &str, shapes: &[OracleShape]) -> Result<Vec<OracleRay>, OracleError> {
     const COLUMNS: [&str; 12] = [
         "shape", "class", "ox", "oy", "oz", "dx", "dy", "dz", "tmin", "hit", "t", "gap",
@@ -170,17 +96,17 @@ fn read_rays(text: &str, shapes: &[OracleShape]) -> Result<Vec<OracleRay>, Oracl
     let mut reader = csv::ReaderBuilder::new()
         .flexible(true)
         .from_reader(text.as_bytes());
-    let heading = reader.headers().map_err(|e| at(1, e))?.clone();
-    let mut place = HashMap::new();
-    for column in COLUMNS {
-        let found = heading.iter().position(|name| name == column);
-        place.insert(column, found.ok_or(OracleError::Column(column))?);
+    let heading = reader.headers().map_err(|e| at(1, e))?;
+    if let Some(missing) = COLUMNS
+        .iter()
+        .find(|name| heading.iter().all(|h| h != **name))
+    {
+        return Err(OracleError::Column(missing));
     }
     let mut rays = Vec::new();
-    for (i, record) in reader.records().enumerate() {
-        let line = i + 2;
-        let record = record.map_err(|e| at(line, e))?;
-        let text = |column: &str| record.get(place[column]).unwrap_or_default();
+    for (line, record) in (2..).zip(reader.deserialize()) {
+        let record: HashMap<String, String> = record.map_err(|e| at(line, e))?;
+        let text = |column: &str| record.get(column).map_or("", String::as_str);
         let number = |column: &str| -> Result<f64, OracleError> {
             text(column)
                 .parse()
