@@ -1,9 +1,9 @@
 //! What the shape of a tape tells of its zero set: products, powers, differences of squares.
 
+use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
-use super::rational::square_root;
 use super::tape::{Binary, Operation, Place, Tape, Unary};
 
 /// A field whose zeros are among those of a product.
@@ -214,4 +214,17 @@ pub fn operands(operation: &Operation) -> [Option<Place>; 2] {
         Operation::Unary(_, a) | Operation::WholePower(a, _) => [Some(a), None],
         Operation::Binary(_, a, b) => [Some(a), Some(b)],
     }
+}
+
+/// √c where that is rational.
+pub fn square_root(c: &BigRational) -> Option<BigRational> {
+    if c.is_negative() {
+        return None;
+    }
+    let root = |n: &BigInt| {
+        let root = n.sqrt();
+        (&root * &root == *n).then_some(root)
+    };
+    // In lowest terms numerator and denominator are squares on their own.
+    Some(BigRational::new_raw(root(c.numer())?, root(c.denom())?))
 }

@@ -17,17 +17,14 @@ pub struct ExpressionError {
 }
 
 impl ExpressionError {
-    pub(super) fn new(problem: Problem, span: Range<usize>) -> Self {
-        Self {
-            expected: problem.expected(),
-            problem,
-            span,
-            names: Vec::new(),
-        }
-    }
-
     pub(super) fn expected(mut self, expected: impl Into<String>) -> Self {
         self.expected = Some(expected.into());
+        self
+    }
+
+    /// With the names that would have been known.
+    pub(super) fn names<'a>(mut self, names: impl IntoIterator<Item = &'a str>) -> Self {
+        self.names = names.into_iter().map(str::to_owned).collect();
         self
     }
 }
@@ -35,7 +32,7 @@ impl ExpressionError {
 impl From<Problem> for ExpressionError {
     /// A problem of a text as a whole.
     fn from(problem: Problem) -> Self {
-        Self::new(problem, 0..0)
+        problem.at(0..0)
     }
 }
 
@@ -88,6 +85,15 @@ pub enum Problem {
 }
 
 impl Problem {
+    pub(super) fn at(self, span: Range<usize>) -> ExpressionError {
+        ExpressionError {
+            expected: self.expected(),
+            problem: self,
+            span,
+            names: Vec::new(),
+        }
+    }
+
     /// What would have been right, where the kind alone says it.
     fn expected(&self) -> Option<String> {
         let words = match self {

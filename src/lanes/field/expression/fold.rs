@@ -5,7 +5,7 @@ use num_traits::{One, Signed, Zero};
 
 use super::MOST_BITS;
 use super::error::Problem;
-use crate::field::rational::square_root;
+use crate::field::structure::square_root;
 use crate::field::tape::Unary;
 
 pub(super) fn whole_power(c: &BigRational, n: i32) -> Result<BigRational, Problem> {
