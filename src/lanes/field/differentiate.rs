@@ -134,19 +134,15 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
 
     #[inline(always)]
     fn coordinate(&self, axis: usize) -> Self::Value {
+        let value = self.0.coordinate(axis);
         let gradient = three(inlined!(|i: usize| (i == axis).then(|| self.0.number(1.0))));
-        WithGradient {
-            value: self.0.coordinate(axis),
-            gradient,
-        }
+        WithGradient { value, gradient }
     }
 
     #[inline(always)]
     fn constant(&self, index: usize, exact: &BigRational) -> Self::Value {
-        WithGradient {
-            value: self.0.constant(index, exact),
-            gradient: [None, None, None],
-        }
+        let (value, gradient) = (self.0.constant(index, exact), [None, None, None]);
+        WithGradient { value, gradient }
     }
 
     #[inline(always)]

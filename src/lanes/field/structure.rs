@@ -1,4 +1,5 @@
-//! What the shape of a tape tells of its zero set: products, powers, differences of squares.
+//! The zero set of a tape from the form of its outermost operations: products, powers, differences
+//! of squares.
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -81,9 +82,9 @@ impl Tape {
         while let Some((tape, multiplicity)) = waiting.pop() {
             let room = waiting.len() + found.factors.len() < MOST_FACTORS;
             match tape.split().filter(|_| room) {
-                Some(split) => {
-                    found.negative ^= split.negative && multiplicity % 2 == 1;
-                    for (part, n) in split.parts.into_iter().rev() {
+                Some((negative, parts)) => {
+                    found.negative ^= negative && multiplicity % 2 == 1;
+                    for (part, n) in parts.into_iter().rev() {
                         waiting.push((part, multiplicity.saturating_mul(n)));
                     }
                 }
@@ -93,35 +94,24 @@ impl Tape {
         found
     }
 
-    fn split(&self) -> Option<Split> {
+    /// The outermost operation taken apart: whether the sign changes, and the parts with their
+    /// powers.
+    fn split(&self) -> Option<(bool, Vec<(Tape, u32)>)> {
         let operations = self.operations();
-        let part = |place: Place| self.rooted(place).0;
-        let positive = |parts| Split {
-            negative: false,
-            parts,
-        };
+        let part = |place: Place| (self.rooted(place).0, 1);
         match *operations.last()? {
-            Operation::Unary(Unary::Negative, a) => Some(Split {
-                negative: true,
-                parts: vec![(part(a), 1)],
-            }),
+            Operation::Unary(Unary::Negative, a) => Some((true, vec![part(a)])),
             Operation::WholePower(a, n) if n > 0 => {
-                Some(positive(vec![(part(a), n.unsigned_abs())]))
+                Some((false, vec![(part(a).0, n.unsigned_abs())]))
             }
             Operation::Binary(Binary::Product, a, b) => Some(match (self.at(a), self.at(b)) {
-                (Some(c), _) if !c.is_zero() => Split {
-                    negative: c.is_negative(),
-                    parts: vec![(part(b), 1)],
-                },
-                (_, Some(c)) if !c.is_zero() => Split {
-                    negative: c.is_negative(),
-                    parts: vec![(part(a), 1)],
-                },
-                _ => positive(vec![(part(a), 1), (part(b), 1)]),
+                (Some(c), _) if !c.is_zero() => (c.is_negative(), vec![part(b)]),
+                (_, Some(c)) if !c.is_zero() => (c.is_negative(), vec![part(a)]),
+                _ => (false, vec![part(a), part(b)]),
             }),
             Operation::Binary(Binary::Difference, a, b) => match (self.root_of(a), self.root_of(b))
             {
-                (Some(a), Some(b)) => Some(positive(a.minus_and_plus(&b))),
+                (Some(a), Some(b)) => Some((false, a.minus_and_plus(&b))),
                 _ => None,
             },
             Operation::Binary(Binary::Sum, a, b) => {
@@ -132,7 +122,7 @@ impl Tape {
                 let root = Root::Constant(square_root(&-c)?);
                 match self.root_of(other)? {
                     Root::Constant(_) => None,
-                    field => Some(positive(field.minus_and_plus(&root))),
+                    field => Some((false, field.minus_and_plus(&root))),
                 }
             }
             _ => None,
@@ -166,11 +156,6 @@ impl Tape {
             _ => None,
         }
     }
-}
-
-struct Split {
-    negative: bool,
-    parts: Vec<(Tape, u32)>,
 }
 
 enum Root {

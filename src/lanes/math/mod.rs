@@ -1,4 +1,4 @@
-//! Numbers: transforms, extended precision, lanes. Knows nobody else.
+//! Numbers: lanes, intervals, extended precision, transforms. Uses no other room.
 
 pub mod affine;
 pub mod double_double;

@@ -291,7 +291,7 @@ impl SquareFree {
     }
 }
 
-/// The first root on the stretch; it is looked for near the hint first. The zero polynomial has none that could be told from the others.
+/// The first root on the stretch, sought near the hint first; `None` for a constant, zero among them.
 pub fn first_root(
     coefficients: &[BigInt],
     stretch: &Stretch,
@@ -441,9 +441,9 @@ fn narrowed(
             break;
         };
         let value = Value::new(simple, &point);
-        match value.sign() {
+        match value.sign {
             Sign::NoSign => return (point.clone(), point),
-            sign if sign == at_high.sign() => {
+            sign if sign == at_high.sign => {
                 (high, b) = (point, x);
                 ends[1] = value;
             }
@@ -475,10 +475,6 @@ impl Value {
             mantissa: top / libm::pow(below, f64::from(degree)),
             exponent: bits - below_bits * i64::from(degree),
         }
-    }
-
-    fn sign(&self) -> Sign {
-        self.sign
     }
 
     /// |a| / (|a| + |b|), roughly.
