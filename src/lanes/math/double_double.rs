@@ -6,6 +6,7 @@
 
 use super::exact::Exact;
 use super::number::{Approximation, Bounded, INFLATION, Number, quotient_error};
+use super::words::{fast_two_sum, two_sum};
 
 /// An unevaluated sum hi + lo, |lo| ≤ ulp(hi)/2.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,21 +17,6 @@ pub struct Pair {
 
 /// A sum of two f64 with a bound of its distance to the truth.
 pub type DoubleDouble = Bounded<Pair>;
-
-/// a + b = s + e exactly (Knuth 1969), barring overflow.
-#[inline]
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
-    let s = a + b;
-    let b_part = s - a;
-    (s, (a - (s - b_part)) + (b - b_part))
-}
-
-/// a + b = s + e exactly where |a| ≥ |b| or a = 0 (Dekker 1971).
-#[inline]
-fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
-    let s = a + b;
-    (s, b - (s - a))
-}
 
 /// a · b = p + e exactly, barring overflow and underflow.
 #[inline]
@@ -60,9 +46,10 @@ impl Approximation for Pair {
     /// |hi + lo| ≤ |hi| (1 + u): this covers that and the products of errors.
     const PRODUCT: f64 = INFLATION;
 
-    #[inline]
-    fn of(x: f64) -> Self {
-        Self { hi: x, lo: 0.0 }
+    methods! {
+        fn of(x: f64) -> Self = Self { hi: x, lo: 0.0 };
+        fn head(self) -> f64 = self.hi;
+        fn negated(self) -> Self = Self { hi: -self.hi, lo: -self.lo };
     }
 
     fn nearest(x: &Exact) -> (Self, bool) {
@@ -73,11 +60,6 @@ impl Approximation for Pair {
         let rest = x.minus(&Exact::of(hi));
         let lo = rest.to_f64();
         (Self { hi, lo }, rest.is(lo))
-    }
-
-    #[inline]
-    fn head(self) -> f64 {
-        self.hi
     }
 
     #[inline]
@@ -95,14 +77,6 @@ impl Approximation for Pair {
         let cross = self.lo.mul_add(other.hi, self.hi * other.lo);
         let (hi, lo) = fast_two_sum(p, e + cross);
         Self { hi, lo }
-    }
-
-    #[inline]
-    fn negated(self) -> Self {
-        Self {
-            hi: -self.hi,
-            lo: -self.lo,
-        }
     }
 
     fn over(self, other: Self) -> (Self, f64) {

@@ -158,6 +158,12 @@ impl<A: Approximation> Bounded<A> {
 }
 
 impl<A: Approximation> Number for Bounded<A> {
+    methods! {
+        fn negated(&self) -> Self = Self { value: self.value.negated(), ..*self };
+        fn to_f64(&self) -> f64 = self.value.head();
+        fn error(&self) -> f64 = self.error;
+    }
+
     #[inline]
     fn scaled(x: f64, exponent: i32) -> Self {
         let value = x * power_of_two(exponent);
@@ -198,14 +204,6 @@ impl<A: Approximation> Number for Bounded<A> {
     }
 
     #[inline]
-    fn negated(&self) -> Self {
-        Self {
-            value: self.value.negated(),
-            ..*self
-        }
-    }
-
-    #[inline]
     fn sign(&self) -> Option<Ordering> {
         let least = A::LEAST * self.value.head();
         // A NaN in either number fails every comparison and so stays undecided.
@@ -240,16 +238,6 @@ impl<A: Approximation> Number for Bounded<A> {
                 error: inherited,
             },
         }
-    }
-
-    #[inline]
-    fn to_f64(&self) -> f64 {
-        self.value.head()
-    }
-
-    #[inline]
-    fn error(&self) -> f64 {
-        self.error
     }
 }
 

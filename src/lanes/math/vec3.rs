@@ -181,12 +181,9 @@ impl<T: super::lanes::Scalar> Rows<T> {
 
     #[inline(always)]
     pub fn row_point<L: Lanes<Scalar = T>>(&self, l: L, i: usize, p: Vec3<L::Real>) -> L::Real {
-        let r = &self.rows[i];
-        l.splat(r[0]).mul_add(
-            p.x,
-            l.splat(r[1])
-                .mul_add(p.y, l.splat(r[2]).mul_add(p.z, l.splat(r[3]))),
-        )
+        let (row, constant) = (self.splat(l, [(i, 0), (i, 1), (i, 2)]), self.rows[i][3]);
+        let sum = row.y.mul_add(p.y, row.z.mul_add(p.z, l.splat(constant)));
+        row.x.mul_add(p.x, sum)
     }
 
     #[inline(always)]

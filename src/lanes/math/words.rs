@@ -71,24 +71,31 @@ impl<L: Lanes<Scalar = f64>> Pair<L> {
     /// The exact sum of two numbers, as a normalised pair.
     #[inline(always)]
     pub fn normalised(high: L::Real, low: L::Real) -> Self {
-        let (high, low) = two_sum::<L>(high, low);
+        let (high, low) = two_sum(high, low);
         Self::new(high, low)
     }
 
-    /// The same where |e| ≤ 3u |p|, which makes the fast sum exact (Dekker 1971).
+    /// The same where |e| ≤ 3u |p|, for which the fast sum is exact.
     #[inline(always)]
     fn fast_normalised(p: L::Real, e: L::Real) -> Self {
-        let high = p + e;
-        Self::new(high, e - (high - p))
+        let (high, low) = fast_two_sum(p, e);
+        Self::new(high, low)
     }
 }
 
-/// a + b = s + e exactly (Knuth 1969).
+/// a + b = s + e exactly (Knuth 1969), barring overflow.
 #[inline(always)]
-fn two_sum<L: Lanes>(a: L::Real, b: L::Real) -> (L::Real, L::Real) {
+pub(super) fn two_sum<R: Real>(a: R, b: R) -> (R, R) {
     let s = a + b;
     let part = s - a;
     (s, (a - (s - part)) + (b - part))
+}
+
+/// a + b = s + e exactly where |a| ≥ |b| or a = 0 (Dekker 1971).
+#[inline(always)]
+pub(super) fn fast_two_sum<R: Real>(a: R, b: R) -> (R, R) {
+    let s = a + b;
+    (s, b - (s - a))
 }
 
 impl<L: Lanes<Scalar = f64>> Word<L> for Pair<L> {
@@ -103,7 +110,7 @@ impl<L: Lanes<Scalar = f64>> Word<L> for Pair<L> {
     }
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
-        let (s, e) = two_sum::<L>(self.high, other.high);
+        let (s, e) = two_sum(self.high, other.high);
         Self::normalised(s, e + (self.low + other.low))
     }
     #[inline(always)]

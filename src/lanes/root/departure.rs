@@ -1,6 +1,6 @@
 //! Where the search for the next zero begins on a ray that leaves a surface.
 
-use super::interval::{Enclosed, PIECES, sign};
+use super::interval::{Enclosed, PIECES, of, sign};
 
 /// The ray starts at a zero, whose place is known up to rounding.
 ///
@@ -21,15 +21,14 @@ pub fn departure<B: Enclosed, S: Enclosed>(blurred: &mut B, sharp: &mut S, to: f
         let pieces = blurred.over(&[0.0; PIECES], &ends);
         let values = sharp.at(&ends);
         for i in 0..PIECES {
-            if pieces.broken >> i & 1 == 1 {
+            if pieces.broken_at(i) {
                 continue;
             }
-            let sign = |bounds: [[f64; PIECES]; 2]| sign(bounds.map(|bound| bound[i]));
-            if sign(pieces.value) != 0 {
+            if sign(of(&pieces.value, i)) != 0 {
                 return Some(0.0);
             }
-            let direction = sign(pieces.slope);
-            if direction != 0 && sign(values) == direction {
+            let direction = sign(of(&pieces.slope, i));
+            if direction != 0 && sign(of(&values, i)) == direction {
                 return Some(ends[i]);
             }
         }

@@ -214,13 +214,11 @@ impl<F: Enclosed> State<'_, F> {
         let to: [f64; PIECES] = std::array::from_fn(|i| t[i + 1]);
         self.evaluations += 1;
         let pieces = self.function.over(&from, &to);
-        let excluded = |i: usize| pieces.excludes(i);
-        if (0..PIECES).all(|i| excluded(i).is_some()) {
-            parts.extend(
-                (0..PIECES)
-                    .rev()
-                    .filter_map(|i| excluded(i).map(Part::Clear)),
-            );
+        let excluded = (0..PIECES)
+            .rev()
+            .map(|i| pieces.excludes(i).map(Part::Clear));
+        if let Some(clear) = excluded.collect::<Option<Vec<Part>>>() {
+            parts.extend(clear);
             return true;
         }
         let inner = self.ends(&to);
@@ -331,12 +329,13 @@ fn concluded(cluster: &Cluster, after: i8) -> Outcome {
     }
 }
 
-impl Pieces {
-    fn value_of(&self, i: usize) -> [f64; 2] {
-        self.value.map(|bound| bound[i])
-    }
+/// The bounds of one piece or point.
+pub(super) fn of(bounds: &[[f64; PIECES]; 2], i: usize) -> [f64; 2] {
+    [bounds[0][i], bounds[1][i]]
+}
 
-    fn broken_at(&self, i: usize) -> bool {
+impl Pieces {
+    pub(super) fn broken_at(&self, i: usize) -> bool {
         self.broken >> i & 1 == 1
     }
 
@@ -345,7 +344,7 @@ impl Pieces {
         if self.void >> i & 1 == 1 {
             return Some(0);
         }
-        let sign = sign(self.value_of(i));
+        let sign = sign(of(&self.value, i));
         // Where it may jump, one sign is still the sign everywhere that it is defined.
         (sign != 0).then_some(sign)
     }
@@ -355,7 +354,7 @@ impl Pieces {
         if self.broken_at(i) {
             0
         } else {
-            sign(self.slope.map(|bound| bound[i]))
+            sign(of(&self.slope, i))
         }
     }
 
@@ -365,7 +364,7 @@ impl Pieces {
     /// at least s < 0, and for v/S to the left of the right end if they are at most S > 0. The
     /// quotients, their sum and the width are off by a few 2⁻⁵³, or by underflow.
     fn cones_clear(&self, i: usize, ends: &[End], sign: i8) -> bool {
-        let [low, high] = self.slope.map(|bound| bound[i]);
+        let [low, high] = of(&self.slope, i);
         let [a, b] = [&ends[i], &ends[i + 1]];
         let (va, vb, fall, rise) = if sign > 0 {
             (a.value[0], b.value[0], -low, high)
