@@ -18,13 +18,6 @@ pub struct Pair {
 /// A sum of two f64 with a bound of its distance to the truth.
 pub type DoubleDouble = Bounded<Pair>;
 
-/// a · b = p + e exactly, barring overflow and underflow.
-#[inline]
-fn two_product(a: f64, b: f64) -> (f64, f64) {
-    let p = a * b;
-    (p, a.mul_add(b, -p))
-}
-
 impl DoubleDouble {
     /// The two numbers whose sum this is.
     pub fn parts(&self) -> [f64; 2] {
@@ -73,7 +66,9 @@ impl Approximation for Pair {
 
     #[inline]
     fn times(self, other: Self) -> Self {
-        let (p, e) = two_product(self.hi, other.hi);
+        let p = self.hi * other.hi;
+        // hi · hi = p + e exactly, barring overflow and underflow.
+        let e = self.hi.mul_add(other.hi, -p);
         let cross = self.lo.mul_add(other.hi, self.hi * other.lo);
         let (hi, lo) = fast_two_sum(p, e + cross);
         Self { hi, lo }

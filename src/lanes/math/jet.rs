@@ -77,23 +77,4 @@ impl<L: DoubleLanes> Jet<L> {
     pub fn larger(self, other: Self) -> Self {
         self.negated().smaller(other.negated()).negated()
     }
-
-    /// Slope of the angle of the point (other, self): (x y′ − y x′)/(x² + y²).
-    #[inline(always)]
-    pub fn slope_of_angle(self, other: Self) -> Interval<L> {
-        let turn = other.value * self.slope - self.value * other.slope;
-        turn / (other.value.squared() + self.value.squared())
-    }
-
-    /// Slope of aᵇ from its value and ln a: aᵇ (b′ ln a + b a′/a).
-    #[inline(always)]
-    pub fn slope_of_power(
-        self,
-        exponent: Self,
-        power: Interval<L>,
-        logarithm: Interval<L>,
-    ) -> Interval<L> {
-        let rate = exponent.slope * logarithm + exponent.value * self.slope / self.value;
-        power * rate
-    }
 }

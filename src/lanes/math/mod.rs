@@ -7,7 +7,6 @@ pub mod functions;
 pub mod instructions;
 pub mod interval;
 pub mod interval_functions;
-pub mod interval_sides;
 pub mod jet;
 pub mod lanes;
 pub mod lookup;

@@ -27,7 +27,11 @@ fn function_of<L: DoubleLanes>(
 ) -> Interval<L> {
     a.lanes.vectorize(inlined!(|| match function {
         Unary::Negative => -*a,
-        Unary::SquareRoot => a.square_root_noted(domain),
+        Unary::SquareRoot => {
+            let zero = a.lanes.real(0.0);
+            domain.note(!a.low.ge(zero), a.high.lt(zero));
+            a.square_root()
+        }
         Unary::Absolute => a.absolute(),
         Unary::Exponential => a.exponential(),
         Unary::Logarithm => a.logarithm(domain),
@@ -155,12 +159,15 @@ impl<L: DoubleLanes> Arithmetic<L> for Jet<L> {
             Binary::Minimum => self.smaller(other),
             Binary::Maximum => self.larger(other),
             Binary::ArcTangent2 | Binary::Power => {
-                let value = function_of_two(function, [&self.value, &other.value], domain);
+                let (a, b) = (self.value, other.value);
+                let value = function_of_two(function, [&a, &b], domain);
                 let slope = if function == Binary::Power {
-                    let logarithm = function_of(Unary::Logarithm, &self.value, domain);
-                    self.slope_of_power(other, value, logarithm)
+                    // aᵇ (b′ ln a + b a′/a)
+                    let logarithm = function_of(Unary::Logarithm, &a, domain);
+                    value * (other.slope * logarithm + b * self.slope / a)
                 } else {
-                    self.slope_of_angle(other)
+                    // (b a′ − a b′)/(b² + a²)
+                    (b * self.slope - a * other.slope) / (b.squared() + a.squared())
                 };
                 Self::new(value, slope)
             }
