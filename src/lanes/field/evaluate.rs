@@ -19,15 +19,6 @@ pub struct Field<T = f64> {
     constants: Vec<T>,
 }
 
-/// Room for the results of a tape at `W` packets, so that they need not be allocated each time.
-pub struct Scratch<L: Lanes, const W: usize>(Vec<[L::Real; W]>);
-
-impl<L: Lanes, const W: usize> Default for Scratch<L, W> {
-    fn default() -> Self {
-        Self(Vec::new())
-    }
-}
-
 impl<T: Scalar> Field<T> {
     pub fn new(tape: &Tape) -> Self {
         let rounded = |c: &BigRational| T::from_f64(nearest(c));
@@ -37,15 +28,15 @@ impl<T: Scalar> Field<T> {
     }
 
     /// The field at object points, negative inside; NaN where it is undefined. Several packets
-    /// at once share the work of reading the tape.
+    /// at once share the work of reading the tape; `scratch` has room for its results.
     #[inline(always)]
     pub fn values<L: Lanes<Scalar = T>, const W: usize>(
         &self,
         l: L,
         points: [Vec3<L::Real>; W],
-        scratch: &mut Scratch<L, W>,
+        scratch: &mut Vec<[L::Real; W]>,
     ) -> [L::Real; W] {
-        let values = self.tape.evaluate(&self.at(l, points), &mut scratch.0);
+        let values = self.tape.evaluate(&self.at(l, points), scratch);
         values.unwrap_or_else(|| [l.real(f64::NAN); W])
     }
 
@@ -97,7 +88,7 @@ impl Field {
 
     /// f(p); NaN where it is undefined.
     pub fn value(&self, p: DVec3) -> f64 {
-        let [value] = self.values(One, [Vec3::splat(One, p)], &mut Scratch::default());
+        let [value] = self.values(One, [Vec3::splat(One, p)], &mut Vec::new());
         value
     }
 

@@ -78,7 +78,7 @@ impl Job<f64> for Survey<'_> {
                 let mut squares = Interval::splat(l, [0.0, 0.0]);
                 for axis in 0..3 {
                     let along = coordinates(&place, axis);
-                    let (jet, domain) = self.program.jet(l, &along, &mut registers);
+                    let (jet, domain) = self.program.value(l, &along, &mut registers);
                     squares = squares + jet.slope.squared();
                     known.undefined &= domain.void.bits() == every;
                     known.maybe_undefined |= domain.broken.bits() != 0;

@@ -37,7 +37,8 @@ pub struct Question<L: Lanes> {
     pub start_error: L::Real,
     /// How many times 1 is known to be a root, in all lanes: that many last coefficients are zero.
     pub roots_at_end: usize,
-    /// Part of the solver's own rounding that is accounted for: 1.
+    /// Factor on the bound of the solver's own rounding: 1, or 0 for tests to see that the bound is
+    /// needed.
     pub accounted: f64,
     pub active: L::Mask,
 }
@@ -391,6 +392,8 @@ fn enclosed<L: Lanes<Scalar = f64>, W: Word<L>>(
     let mut width = (error / steepness).mul_add(l.real(1.5), l.real(2.0 * f64::EPSILON));
     let (mut low, mut high) = (zero, one);
     let mut open = active;
+    // Twelve widths reach 8¹¹ = 2³³ times the first; a side without a certain sign by then keeps the
+    // end of [0, 1].
     for _ in 0..12 {
         let (a, b) = ((x - width).max(zero), (x + width).min(one));
         let before = value(l, scaled, a).gt(error);

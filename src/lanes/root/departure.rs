@@ -4,10 +4,10 @@ use super::interval::{Enclosed, PIECES, of, sign};
 
 /// The ray starts at a zero, whose place is known up to rounding.
 ///
-/// `blurred` encloses the function for every start that rounding may have made of the true one,
-/// `sharp` for the start as it is. Up to the returned t no start has a zero besides its own, for
-/// the function is monotone there, and the sign at t is that of having left it. 0 where no start
-/// is a zero of this function at all; `None` where neither can be told, as for a ray along the
+/// `blurred` encloses the function for all starts that rounding may have put in the place of the true
+/// one, `sharp` for the start as given. Up to the returned t the function is monotone, so that no start
+/// has a zero besides its own, and at t it has the sign of the side that the ray leaves to. 0 where no
+/// start is a zero of this function; `None` where neither can be proved, as for a ray along the
 /// surface.
 pub fn departure<B: Enclosed, S: Enclosed>(blurred: &mut B, sharp: &mut S, to: f64) -> Option<f64> {
     let mut width = to;
@@ -20,7 +20,7 @@ pub fn departure<B: Enclosed, S: Enclosed>(blurred: &mut B, sharp: &mut S, to: f
         }
         let pieces = blurred.over(&[0.0; PIECES], &ends);
         let values = sharp.at(&ends);
-        for i in 0..PIECES {
+        for (i, &end) in ends.iter().enumerate() {
             if pieces.broken_at(i) {
                 continue;
             }
@@ -29,7 +29,7 @@ pub fn departure<B: Enclosed, S: Enclosed>(blurred: &mut B, sharp: &mut S, to: f
             }
             let direction = sign(of(&pieces.slope, i));
             if direction != 0 && sign(of(&values, i)) == direction {
-                return Some(ends[i]);
+                return Some(end);
             }
         }
     }

@@ -28,16 +28,14 @@ impl Point {
     pub fn dyadic(x: &Exact) -> Self {
         let (mantissa, exponent) = x.parts();
         let shift = exponent.unsigned_abs();
-        if exponent >= 0 {
-            Self {
-                numerator: mantissa << shift,
-                denominator: BigInt::one(),
-            }
+        let (up, down) = if exponent >= 0 {
+            (shift, 0)
         } else {
-            Self {
-                numerator: mantissa.clone(),
-                denominator: BigInt::one() << shift,
-            }
+            (0, shift)
+        };
+        Self {
+            numerator: mantissa << up,
+            denominator: BigInt::one() << down,
         }
     }
 
@@ -54,24 +52,25 @@ impl Point {
 
     /// The nearest f64 not above, for points within the range of f64.
     fn floor(&self) -> f64 {
-        let mut x = self.near().clamp(-f64::MAX, f64::MAX);
-        while Self::of(x).compare(self) == Ordering::Greater && x > -f64::MAX {
-            x = x.next_down();
-        }
-        x
+        self.moved(Ordering::Greater, f64::next_down)
     }
 
     /// The nearest f64 not below, for points within the range of f64.
     fn ceil(&self) -> f64 {
+        self.moved(Ordering::Less, f64::next_up)
+    }
+
+    /// A near f64, moved while it compares like this with the point and a finite one follows.
+    fn moved(&self, wrong: Ordering, next: impl Fn(f64) -> f64) -> f64 {
         let mut x = self.near().clamp(-f64::MAX, f64::MAX);
-        while Self::of(x).compare(self) == Ordering::Less && x < f64::MAX {
-            x = x.next_up();
+        while Self::of(x).compare(self) == wrong && next(x).is_finite() {
+            x = next(x);
         }
         x
     }
 }
 
-/// Where roots count: between the ends, and at those ends that count.
+/// Where roots are looked for: between the ends, and at those ends that count.
 #[derive(Debug, Clone)]
 pub struct Stretch {
     pub low: Point,

@@ -412,18 +412,11 @@ fn classified(pieces: &Pieces, ends: &[End; PIECES + 1]) -> Vec<Part> {
 
 /// The crossing of a monotone run, between the last end before it and the first after it.
 fn narrowest(ends: &[End], direction: i8) -> Part {
-    let mut bracket = [ends[0], ends[ends.len() - 1]];
-    for end in ends {
-        if end.sign() == -direction {
-            bracket[0] = *end;
-        }
-    }
-    for end in ends.iter().rev() {
-        if end.sign() == direction {
-            bracket[1] = *end;
-        }
-    }
-    Part::Crossing(bracket)
+    let before = ends.iter().rfind(|end| end.sign() == -direction);
+    let after = ends.iter().find(|end| end.sign() == direction);
+    // The outermost ends have these signs: the caller has looked.
+    let (first, last) = (&ends[0], &ends[ends.len() - 1]);
+    Part::Crossing([*before.unwrap_or(first), *after.unwrap_or(last)])
 }
 
 /// What a piece holds that is in no run with a crossing.

@@ -79,6 +79,7 @@ fn within<F: Enclosed>(
         }
         let gained = march.clear - before;
         let size = before.abs().max(end.abs());
+        // Four units in the last place: balls around points of such a distance are made of rounding.
         let resolution = 4.0 * f64::EPSILON * size;
         let stuck = gained <= 0.0 && step <= resolution;
         match march.opposite {

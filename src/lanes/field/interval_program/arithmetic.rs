@@ -7,7 +7,9 @@ use crate::math::jet::Jet;
 use crate::math::lanes::Real;
 
 /// An arithmetic that evaluates programs.
-pub(super) trait Arithmetic<L: DoubleLanes>: Copy {
+pub trait Arithmetic<L: DoubleLanes>: Copy {
+    /// What may be any number.
+    fn anything(l: L) -> Self;
     fn constant(value: Interval<L>) -> Self;
     fn unary(self, function: Unary, domain: &mut Domain<L>) -> Self;
     fn binary(self, function: Binary, other: Self, domain: &mut Domain<L>) -> Self;
@@ -103,6 +105,7 @@ fn whole_power_of<L: DoubleLanes>(a: &Jet<L>, n: i32, domain: &mut Domain<L>) ->
 
 impl<L: DoubleLanes> Arithmetic<L> for Interval<L> {
     methods! {
+        fn anything(l: L) -> Self = Self::whole(l);
         fn constant(value: Interval<L>) -> Self = value;
         fn unary(self, function: Unary, domain: &mut Domain<L>) -> Self =
             function_of(function, &self, domain);
@@ -131,6 +134,7 @@ impl<L: DoubleLanes> Arithmetic<L> for Interval<L> {
 
 impl<L: DoubleLanes> Arithmetic<L> for Jet<L> {
     methods! {
+        fn anything(l: L) -> Self = Self::new(Interval::whole(l), Interval::whole(l));
         fn constant(value: Interval<L>) -> Self =
             Self::new(value, Interval::splat(value.lanes, [0.0, 0.0]));
         fn whole_power(self, n: i32, domain: &mut Domain<L>) -> Self =
@@ -186,6 +190,7 @@ pub struct Side<L: DoubleLanes>(pub(super) Interval<L>);
 
 impl<L: DoubleLanes> Arithmetic<L> for Side<L> {
     methods! {
+        fn anything(l: L) -> Self = Self(Interval::whole(l));
         fn constant(value: Interval<L>) -> Self = Self(value);
         fn squared(self) -> Self = Self(self.0.squared());
         fn times_number(self, c: f64) -> Self = Self(self.0.times_number(c));
