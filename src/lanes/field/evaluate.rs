@@ -132,23 +132,6 @@ fn by_lane<L: Lanes>(l: L, a: L::Real, f: impl Fn(usize, f64) -> f64) -> L::Real
     result
 }
 
-/// A function of two values, computed in lanes where it is one of arithmetic.
-#[inline(always)]
-fn of_two<L: Lanes>(l: L, function: Binary, a: L::Real, b: L::Real) -> L::Real {
-    match function {
-        Binary::Sum => a + b,
-        Binary::Difference => a - b,
-        Binary::Product => a * b,
-        Binary::Quotient => a / b,
-        Binary::Minimum => a.min(b),
-        Binary::Maximum => a.max(b),
-        Binary::ArcTangent2 | Binary::Power => by_lane(l, a, |i, x| {
-            let y = l.lane(b, i).to_f64();
-            binary(function, x, y)
-        }),
-    }
-}
-
 impl<L: Lanes, const W: usize> Packets<'_, L, W> {
     #[inline(always)]
     fn each(&self, f: impl Fn(usize) -> L::Real) -> [L::Real; W] {
@@ -179,19 +162,26 @@ impl<L: Lanes, const W: usize> Algebra for Packets<'_, L, W> {
 
     #[inline(always)]
     fn binary(&self, function: Binary, a: &Self::Value, b: &Self::Value) -> Self::Value {
-        // The function is told apart once, not for each packet.
-        macro_rules! known {
-            ($function:expr) => {
-                self.each(inlined!(|i: usize| of_two(
-                    self.lanes, $function, a[i], b[i]
-                )))
+        // Chosen once, not for each packet.
+        macro_rules! each {
+            (|$x:ident, $y:ident| $value:expr) => {
+                self.each(inlined!(|i: usize| {
+                    let ($x, $y) = (a[i], b[i]);
+                    $value
+                }))
             };
         }
+        let l = self.lanes;
         match function {
-            Binary::Sum => known!(Binary::Sum),
-            Binary::Difference => known!(Binary::Difference),
-            Binary::Product => known!(Binary::Product),
-            _ => known!(function),
+            Binary::Sum => each!(|x, y| x + y),
+            Binary::Difference => each!(|x, y| x - y),
+            Binary::Product => each!(|x, y| x * y),
+            Binary::Quotient => each!(|x, y| x / y),
+            Binary::Minimum => each!(|x, y| x.min(y)),
+            Binary::Maximum => each!(|x, y| x.max(y)),
+            Binary::ArcTangent2 | Binary::Power => {
+                each!(|x, y| by_lane(l, x, |i, x| { binary(function, x, l.lane(y, i).to_f64()) }))
+            }
         }
     }
 

@@ -237,16 +237,10 @@ impl Chain {
     }
 
     fn changes(&self, point: &Point) -> usize {
-        let mut changes = 0;
-        let mut before = Sign::NoSign;
-        for polynomial in &self.0 {
-            let sign = polynomial.sign_at(point);
-            if sign != Sign::NoSign {
-                changes += usize::from(before != Sign::NoSign && before != sign);
-                before = sign;
-            }
-        }
-        changes
+        let signs = self.0.iter().map(|polynomial| polynomial.sign_at(point));
+        let mut signs: Vec<Sign> = signs.filter(|sign| *sign != Sign::NoSign).collect();
+        signs.dedup();
+        signs.len().saturating_sub(1)
     }
 
     /// Distinct roots in (low, high]; for a square-free polynomial.
@@ -270,18 +264,14 @@ impl SquareFree {
         if whole.degree() == 0 {
             return None;
         }
-        let chain = Chain::new(&whole);
-        let common = chain.last().clone();
-        if common.degree() == 0 {
-            return Some(Self {
-                simple: whole,
-                chain,
-                common,
-            });
+        let mut chain = Chain::new(&whole);
+        let mut common = chain.last().clone();
+        let mut simple = whole;
+        if common.degree() > 0 {
+            common = common.primitive();
+            simple = simple.quotient(&common);
+            chain = Chain::new(&simple);
         }
-        let common = common.primitive();
-        let simple = whole.quotient(&common);
-        let chain = Chain::new(&simple);
         Some(Self {
             simple,
             chain,
