@@ -15,7 +15,7 @@ pub struct Factor {
 }
 
 /// A field as ± a positive constant × its factors, each to its multiplicity.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Factors {
     pub negative: bool,
     /// The factors, each different; at least one unless the field is constant.
@@ -74,10 +74,7 @@ impl Tape {
     /// where a constant b² must have a rational root. The zero set is that of the factors
     /// together, wherever all of them are defined.
     pub fn factors(&self) -> Factors {
-        let mut found = Factors {
-            negative: false,
-            factors: Vec::new(),
-        };
+        let mut found = Factors::default();
         let mut waiting = vec![(self.clone(), 1u32)];
         while let Some((tape, multiplicity)) = waiting.pop() {
             let room = waiting.len() + found.factors.len() < MOST_FACTORS;
@@ -109,21 +106,16 @@ impl Tape {
                 (_, Some(c)) if !c.is_zero() => (c.is_negative(), vec![part(a)]),
                 _ => (false, vec![part(a), part(b)]),
             }),
-            Operation::Binary(Binary::Difference, a, b) => match (self.root_of(a), self.root_of(b))
-            {
-                (Some(a), Some(b)) => Some((false, a.minus_and_plus(&b))),
-                _ => None,
-            },
+            Operation::Binary(Binary::Difference, a, b) => {
+                Some((false, minus_and_plus(&self.root_of(a)?, &self.root_of(b)?)))
+            }
             Operation::Binary(Binary::Sum, a, b) => {
-                let constant = [(a, b), (b, a)]
-                    .into_iter()
-                    .find_map(|(c, other)| Some((self.at(c).filter(|c| c.is_negative())?, other)));
-                let (c, other) = constant?;
-                let root = Root::Constant(square_root(&-c)?);
-                match self.root_of(other)? {
-                    Root::Constant(_) => None,
-                    field => Some((false, field.minus_and_plus(&root))),
-                }
+                let negative = |place: Place| self.at(place).filter(|c| c.is_negative());
+                let mut orders = [(a, b), (b, a)].into_iter();
+                let (c, other) = orders.find_map(|(c, other)| Some((negative(c)?, other)))?;
+                let root = constant(square_root(&-c)?);
+                let field = self.root_of(other).filter(|_| self.at(other).is_none())?;
+                Some((false, minus_and_plus(&field, &root)))
             }
             _ => None,
         }
@@ -137,7 +129,7 @@ impl Tape {
     }
 
     /// What the result at a place is the square of.
-    fn root_of(&self, place: Place) -> Option<Root> {
+    fn root_of(&self, place: Place) -> Option<Tape> {
         match self.operations()[place] {
             Operation::WholePower(a, n) if n > 0 && n % 2 == 0 => {
                 let (mut tape, _) = self.rooted(a);
@@ -145,43 +137,32 @@ impl Tape {
                     let last = tape.operations().len() - 1;
                     tape.push(Operation::WholePower(last, n / 2));
                 }
-                Some(Root::Field(tape))
+                Some(tape)
             }
             Operation::Constant(index) => {
                 let c = &self.constants()[index];
-                square_root(c)
-                    .filter(|_| c.is_positive())
-                    .map(Root::Constant)
+                square_root(c).filter(|_| c.is_positive()).map(constant)
             }
             _ => None,
         }
     }
 }
 
-enum Root {
-    Constant(BigRational),
-    Field(Tape),
+fn constant(c: BigRational) -> Tape {
+    let mut tape = Tape::default();
+    tape.push_constant(c);
+    tape
 }
 
-impl Root {
-    fn minus_and_plus(&self, other: &Self) -> Vec<(Tape, u32)> {
-        [Binary::Difference, Binary::Sum]
-            .map(|function| {
-                let mut tape = Tape::default();
-                let a = self.put_on(&mut tape);
-                let b = other.put_on(&mut tape);
-                tape.push(Operation::Binary(function, a, b));
-                (tape, 1)
-            })
-            .into()
-    }
-
-    fn put_on(&self, tape: &mut Tape) -> Place {
-        match self {
-            Self::Constant(c) => tape.push_constant(c.clone()),
-            Self::Field(field) => tape.append(field),
-        }
-    }
+/// a − b and a + b.
+fn minus_and_plus(a: &Tape, b: &Tape) -> Vec<(Tape, u32)> {
+    let factors = [Binary::Difference, Binary::Sum].map(|function| {
+        let mut tape = Tape::default();
+        let (a, b) = (tape.append(a), tape.append(b));
+        tape.push(Operation::Binary(function, a, b));
+        (tape, 1)
+    });
+    factors.into()
 }
 
 impl Factors {
