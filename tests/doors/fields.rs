@@ -19,7 +19,7 @@ pub fn values_and_gradients(
         kernel: Evaluation(tape),
         input: points,
     };
-    set.run_in(precision, job)
+    crate::columns::run_in(set, precision, job)
 }
 
 struct Evaluation<'a>(&'a Tape);

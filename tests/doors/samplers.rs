@@ -49,7 +49,7 @@ pub fn sample_numbers(
         numbers,
         samples,
     };
-    set.run_in(precision, job)
+    crate::columns::run_in(set, precision, job)
 }
 
 struct SampleNumbers<'a> {
@@ -125,7 +125,7 @@ pub fn shuffled(
     shuffle: Shuffle,
     words: &[[u32; 2]],
 ) -> Vec<u32> {
-    set.run_in(precision, Shuffled(shuffle, words))
+    crate::columns::run_in(set, precision, Shuffled(shuffle, words))
 }
 
 struct Shuffled<'a>(Shuffle, &'a [[u32; 2]]);

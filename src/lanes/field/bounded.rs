@@ -132,16 +132,17 @@ impl Differentiable for Numbers<'_> {
     }
 
     fn where_negative(&self, s: &Bounded, below: &Bounded, above: &Bounded) -> Bounded {
-        let chosen = if s.value < 0.0 { below } else { above };
-        let other = if s.value < 0.0 { above } else { below };
+        let negative = s.value < 0.0;
+        let (chosen, other) = if negative {
+            (below, above)
+        } else {
+            (above, below)
+        };
         let mut error = chosen.error;
         if s.value.abs() <= s.error {
             // It may be the other one.
             error = error.max((chosen.value - other.value).abs() + other.error);
         }
-        Bounded {
-            value: chosen.value,
-            error,
-        }
+        Bounded { error, ..*chosen }
     }
 }

@@ -30,16 +30,33 @@ pub struct Polynomial {
 
 impl Polynomial {
     /// Integer coefficients by exponents, over a common denominator other than zero.
-    pub fn new(terms: impl IntoIterator<Item = (Exponents, BigInt)>, denominator: BigInt) -> Self {
+    pub fn new(
+        terms: impl IntoIterator<Item = (Exponents, BigInt)>,
+        mut denominator: BigInt,
+    ) -> Self {
         let mut sums = BTreeMap::<Exponents, BigInt>::new();
         for (exponents, coefficient) in terms {
             *sums.entry(exponents).or_default() += coefficient;
+        }
+        sums.retain(|_, c| !c.is_zero());
+        let mut common = denominator.clone();
+        for coefficient in sums.values() {
+            if common.abs().is_one() {
+                break;
+            }
+            common = common.gcd(coefficient);
+        }
+        if denominator.is_negative() != common.is_negative() {
+            common = -common;
+        }
+        if !common.is_one() {
+            sums.values_mut().for_each(|c| *c /= &common);
+            denominator /= common;
         }
         Self {
             terms: sums,
             denominator,
         }
-        .reduced()
     }
 
     pub fn constant(value: &BigRational) -> Self {
@@ -60,27 +77,6 @@ impl Polynomial {
             budget: Cell::new(MOST_PRODUCTS),
         };
         tape.evaluate(&recognition, &mut Vec::new())?
-    }
-
-    fn reduced(mut self) -> Self {
-        self.terms.retain(|_, c| !c.is_zero());
-        let mut common = self.denominator.clone();
-        for coefficient in self.terms.values() {
-            if common.abs().is_one() {
-                break;
-            }
-            common = common.gcd(coefficient);
-        }
-        if self.denominator.is_negative() != common.is_negative() {
-            common = -common;
-        }
-        if !common.is_one() {
-            for coefficient in self.terms.values_mut() {
-                *coefficient /= &common;
-            }
-            self.denominator /= common;
-        }
-        self
     }
 
     /// Coefficients other than zero, in lexical order of the exponents.

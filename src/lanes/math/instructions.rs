@@ -144,17 +144,6 @@ impl Instructions {
     pub fn named(name: &str) -> Option<Self> {
         Self::all().into_iter().find(|own| own.name() == name)
     }
-
-    /// Does a job that can be done in either precision.
-    pub fn run_in<J, O>(self, precision: Precision, job: J) -> O
-    where
-        J: Job<f32, Output = O> + Job<f64, Output = O>,
-    {
-        match precision {
-            Precision::Single => self.run::<f32, J>(job),
-            Precision::Double => self.run::<f64, J>(job),
-        }
-    }
 }
 
 /// The boundary at which code for an instruction set begins.

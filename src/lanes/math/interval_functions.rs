@@ -23,9 +23,9 @@ const LN_2_LOW: f64 = 2.319_046_813_846_299_6e-17;
 /// reduction by two words of π/2 keeps |k| · 2⁻¹⁰⁷ below 2⁻⁸⁶.
 const LARGEST_ANGLE: f64 = 1_048_576.0;
 
-/// [π/2] and [π] in f64: the literals are rounded to nearest, below the true values.
-const HALF_PI: [f64; 2] = [FRAC_PI_2, FRAC_PI_2.next_up()];
-const PI: [f64; 2] = [2.0 * FRAC_PI_2, 2.0 * FRAC_PI_2.next_up()];
+/// The f64 above π/2 and above π: those rounded to nearest are below.
+const HALF_PI_ABOVE: f64 = FRAC_PI_2.next_up();
+const PI_ABOVE: f64 = 2.0 * HALF_PI_ABOVE;
 
 /// The interval between the kernel's values at its ends, of an increasing function.
 #[inline(always)]
@@ -214,8 +214,8 @@ impl<L: DoubleLanes> Interval<L> {
     pub fn arc_tangent(self) -> Self {
         let l = self.lanes;
         let a = increasing(l, atan_kernel(l, self.low), atan_kernel(l, self.high));
-        let [_, half_pi] = HALF_PI;
-        Self::new(l, a.low.max(l.real(-half_pi)), a.high.min(l.real(half_pi)))
+        let half_pi = l.real(HALF_PI_ABOVE);
+        Self::new(l, a.low.max(-half_pi), a.high.min(half_pi))
     }
 
     /// Arc sine as arctan(x/√((1 − x)(1 + x))); outside [−1, 1] undefined.
@@ -240,8 +240,8 @@ impl<L: DoubleLanes> Interval<L> {
             let angle = ((one - x) / (one + x)).square_root().arc_tangent();
             angle.times_number(2.0)
         });
-        let [_, pi] = PI;
-        Self::new(l, at(b).low.max(l.real(0.0)), at(a).high.min(l.real(pi)))
+        let pi = l.real(PI_ABOVE);
+        Self::new(l, at(b).low.max(l.real(0.0)), at(a).high.min(pi))
     }
 
     /// Both ends moved into [−1, 1].
@@ -284,7 +284,7 @@ impl<L: DoubleLanes> Interval<L> {
         let origin = x.may_be_zero() & y.may_be_zero();
         let cut = !x.low.ge(zero) & y.low.lt(zero) & !y.high.lt(zero);
         domain.note(origin | cut, x.is_zero() & y.is_zero());
-        let pi = l.real(PI[1]);
+        let pi = l.real(PI_ABOVE);
         let anywhere = Self::new(l, -pi, pi);
         let angle = Self::new(l, low.max(-pi), high.min(pi));
         anywhere.or_where_not(origin | cut, angle)
