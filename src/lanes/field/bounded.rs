@@ -1,5 +1,5 @@
 //! Numbers that carry a bound of their own rounding error (Higham 2002, ch. 3.3: running error
-//! analysis), to tell a gradient from the noise of its evaluation.
+//! analysis), to distinguish a gradient from the noise of its evaluation.
 
 use std::ops::Mul;
 

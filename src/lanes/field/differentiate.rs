@@ -1,6 +1,6 @@
 //! Gradients of tapes by automatic differentiation, forward (Griewank and Walther 2008, ch. 3).
 //!
-//! Any arithmetic that can evaluate a tape and tell a sign can carry the three derivatives along.
+//! Any arithmetic that can evaluate a tape and decide signs can carry the three derivatives along.
 //! A derivative that is zero by construction is not carried at all, so that it costs nothing and
 //! never meets the infinite slope of some function at a constant.
 
@@ -8,7 +8,7 @@ use num_rational::BigRational;
 
 use super::tape::{Algebra, Binary, Unary};
 
-/// What an arithmetic needs besides, for derivatives.
+/// An arithmetic that can also evaluate derivatives.
 pub trait Differentiable: Algebra {
     /// A number that is exact in f64.
     fn number(&self, x: f64) -> Self::Value;

@@ -1,5 +1,5 @@
-//! A tape made ready for intervals: constants enclosed once, and operations told apart that can
-//! be cheaper or tighter than they look (squares, multiples, sine with cosine).
+//! A tape prepared for intervals: constants are enclosed once, and operations that have a cheaper or
+//! tighter form are recognised (squares, multiples, sine with cosine).
 //!
 //! Evaluated over any lanes of f64, as a value alone or with its slope along a line.
 

@@ -1,5 +1,4 @@
-//! What can be proved of a field over a box: that it is undefined, that it has no zero, how steep
-//! it is at most.
+//! Proofs about a field over a box: that it is undefined, that it has no zero, a bound of its slope.
 
 use glam::DVec3;
 

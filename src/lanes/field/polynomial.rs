@@ -13,7 +13,7 @@ use super::tape::{Algebra, Binary, Tape, Unary};
 /// Exponents of x, y and z.
 pub type Exponents = [u32; 3];
 
-/// Highest total degree that is recognised.
+/// Highest total degree that is recognised: more than any finder of roots takes, and a bound on work.
 pub const MOST_DEGREE: u32 = 64;
 /// Most products of two terms that recognising may take: some tenths of a second.
 const MOST_PRODUCTS: u64 = 1 << 21;
@@ -132,7 +132,7 @@ impl Polynomial {
     }
 }
 
-/// Tapes in the arithmetic of polynomials; `None` stands for what is none.
+/// The arithmetic of polynomials; `None` is a result that is no polynomial within the limits.
 struct Recognition {
     /// Products of terms that may yet be formed.
     budget: Cell<u64>,

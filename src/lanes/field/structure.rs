@@ -48,7 +48,7 @@ impl Tape {
         (tape, places)
     }
 
-    /// All operations of another tape; returns where its field stands.
+    /// Appends all operations of another tape; returns the place of its field.
     fn append(&mut self, other: &Tape) -> Place {
         let mut moved = Vec::with_capacity(other.operations().len());
         for place in 0..other.operations().len() {

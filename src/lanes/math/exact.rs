@@ -59,7 +59,7 @@ impl Exact {
 }
 
 impl Number for Exact {
-    /// Zero stands in for a number that is not finite; callers refuse those before.
+    /// Zero for a number that is not finite, which callers exclude.
     fn scaled(x: f64, exponent: i32) -> Self {
         debug_assert!(x.is_finite());
         let (mantissa, power, sign) = x.integer_decode();
@@ -118,7 +118,6 @@ impl Number for Exact {
     /// Truncated to [`VALUE_BITS`]; 0 for negative numbers.
     fn square_root(&self) -> Self {
         let (radicand, exponent) = self.widened_to(2 * VALUE_BITS);
-        // Of what is negative, 0.
         Self::new(radicand.max(BigInt::ZERO).sqrt(), exponent / 2)
     }
 

@@ -67,7 +67,7 @@ macro_rules! instruction_sets {
                 #[cfg(target_arch = $arch)]
                 $set(fearless_simd::$set),
             )*
-            /// What every machine of its kind has, for one lane after the other.
+            /// The instructions that every machine of the architecture has, one lane after the other.
             Scalar,
         }
 

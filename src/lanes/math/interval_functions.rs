@@ -349,9 +349,8 @@ impl<L: DoubleLanes> Interval<L> {
     }
 }
 
-// Functions that jump, on one side of the jump: what lies beyond is left out, so that the enclosures
-// are those of a continuous function, if unbounded ones. Together the two sides hold every value that
-// the function has where it is defined.
+// Functions that jump, restricted to one side of the jump, where they are continuous, if unbounded.
+// Together the two sides hold every value of the function.
 impl<L: DoubleLanes> Interval<L> {
     /// x / y for the positive y where `side`, for the negative ones elsewhere; void where there
     /// are none.
@@ -373,7 +372,7 @@ impl<L: DoubleLanes> Interval<L> {
 
     /// tan x after the last pole (`side`: the values up to that at the upper end) or before the
     /// first one (those from the value at the lower end); the ordinary enclosure without a pole,
-    /// and nothing known of intervals that may hold two.
+    /// and the whole line for intervals that may hold two.
     #[inline(always)]
     pub fn tangent_beside_pole(self, side: L::Mask) -> Self {
         let l = self.lanes;

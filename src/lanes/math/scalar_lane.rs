@@ -1,5 +1,5 @@
-//! One lane as lanes: what is written over [`Lanes`] runs for a single number too, with the bits
-//! that each lane of a packet would have, in instructions that every machine has.
+//! A single number as lanes: code over [`Lanes`] gives it the same bits as a lane of a packet, in
+//! instructions that every machine has.
 
 use super::instructions::Instructions;
 use super::lanes::{Int, Lanes, Mask, Real};

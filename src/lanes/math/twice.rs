@@ -131,7 +131,7 @@ macro_rules! each {
     };
 }
 
-/// What is done alike to reals and to integers.
+/// Methods that reals and integers have under different names.
 macro_rules! values {
     (
         $value:ident of $scalar:ty:

@@ -126,8 +126,8 @@ pub struct Rows<T> {
 /// Marks a row that depends on more than one coordinate.
 const SEVERAL: u8 = 3;
 
-/// The only coordinate that a row depends on: most things stand square to the axes, and what is
-/// multiplied by zero need not be computed.
+/// The only coordinate that a row depends on: most objects are aligned with the axes, and products with
+/// zero need not be computed.
 fn only(row: &[f64; 4]) -> u8 {
     match row {
         [_, 0.0, 0.0, _] => 0,

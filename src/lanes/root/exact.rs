@@ -204,9 +204,8 @@ impl Polynomial {
 pub(super) struct Chain(Vec<Polynomial>);
 
 impl Chain {
-    /// Remainders with changed signs, divided by what subresultants have in common (Collins 1967,
-    /// Brown and Traub 1971), which is known beforehand: their coefficients grow as slowly as they
-    /// can.
+    /// Remainders with changed signs, divided by the common factor of subresultants, which is known
+    /// beforehand (Collins 1967, Brown and Traub 1971): coefficients grow as slowly as they can.
     fn new(polynomial: &Polynomial) -> Self {
         let mut chain = vec![polynomial.clone(), polynomial.derivative()];
         let (mut g, mut h) = (BigInt::one(), BigInt::one());

@@ -6,7 +6,7 @@
 //! where cones of the enclosed slopes over both ends do not reach zero (the mean value form, from
 //! both ends; Piyavskii 1972). A run of pieces with slopes of one sign between ends of different
 //! signs holds exactly one zero. What is neither is cut again, leftmost first, until the sign of
-//! the function can no longer be told at any of the cuts; such a *cluster* holds a zero if the
+//! the function is not certain at any of the cuts; such a *cluster* holds a zero if the
 //! signs at its ends differ, and is undecided otherwise: a zero of even multiplicity, or none.
 
 use super::{Outcome, Root};
@@ -39,11 +39,11 @@ pub trait Enclosed {
     }
 }
 
-/// A finder's answer, and what it cost.
+/// A finder's answer and its cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Search {
     pub outcome: Outcome,
-    /// How many times eight enclosures were asked for.
+    /// Evaluations of the function, each of eight enclosures.
     pub evaluations: u32,
 }
 
@@ -87,7 +87,7 @@ enum Part {
     Open([End; 2], bool),
 }
 
-/// Zeros that cannot be told apart from none, up to now.
+/// A stretch that may or may not hold zeros.
 #[derive(Debug, Clone, Copy)]
 struct Cluster {
     from: f64,
@@ -191,7 +191,7 @@ impl<F: Enclosed> State<'_, F> {
         }
     }
 
-    /// Not asked of the whole stretch, of which nothing is known yet.
+    /// Not tried on the whole stretch, of which nothing is known yet.
     fn jumps_over_zero(&mut self, from: f64, to: f64) -> bool {
         if self.evaluations == 1 {
             return false;
@@ -200,7 +200,7 @@ impl<F: Enclosed> State<'_, F> {
         self.function.jumps_over_zero(from, to)
     }
 
-    /// Cuts a part and puts the pieces in its place; false where that tells nothing new.
+    /// Cuts a part and puts the pieces in its place; false where nothing new is learnt.
     fn cut(&mut self, [a, b]: [End; 2], parts: &mut Vec<Part>) -> bool {
         let mut t = [a.t; PIECES + 1];
         for (t, cut) in t[1..].iter_mut().zip(CUTS) {
@@ -239,9 +239,9 @@ impl<F: Enclosed> State<'_, F> {
 
     /// Narrows the enclosure of the only zero between two ends of different signs.
     ///
-    /// Regula falsi tells where the zero should be; eight points around it, at distances from an
-    /// eighth of the width down to its 2⁻²⁶th, tell by their signs how good that was. Where it was
-    /// not, eight points at equal distances do. The end is where the signs near the zero are lost
+    /// Regula falsi estimates the zero; the signs at eight points around it, at distances from an
+    /// eighth of the width down to its 2⁻²⁶th, narrow the bracket. Where they do not halve it, eight
+    /// points at equal distances follow. The end is where the signs near the zero are lost
     /// in rounding: the values at the ends are as uncertain as they are different.
     fn refined(&mut self, mut bracket: [End; 2]) -> Outcome {
         let mut guess = true;
@@ -283,7 +283,7 @@ fn narrow([a, b]: &mut [End; 2], points: &[End]) {
     }
 }
 
-/// Whether the values at the ends differ by less than twice of what is not known of them.
+/// Whether the values at the ends differ by less than twice their uncertainty.
 fn lost_in_rounding([a, b]: &[End; 2]) -> bool {
     let unknown = (a.value[1] - a.value[0]) + (b.value[1] - b.value[0]);
     let difference = (a.value[0] + 0.5 * (a.value[1] - a.value[0]))
@@ -383,7 +383,8 @@ impl Pieces {
     }
 }
 
-/// What each piece, or each run of pieces over which the function is monotone, holds.
+/// The parts that pieces are, one for each run of pieces over which the function is monotone and has
+/// its zero.
 fn classified(pieces: &Pieces, ends: &[End; PIECES + 1]) -> Vec<Part> {
     let mut parts = Vec::with_capacity(PIECES);
     let mut i = 0;
@@ -419,7 +420,7 @@ fn narrowest(ends: &[End], direction: i8) -> Part {
     Part::Crossing([*before.unwrap_or(first), *after.unwrap_or(last)])
 }
 
-/// What a piece holds that is in no run with a crossing.
+/// The part that a piece is which belongs to no run with a crossing.
 fn single(pieces: &Pieces, ends: &[End; PIECES + 1], i: usize) -> Part {
     let bracket = [ends[i], ends[i + 1]];
     let [before, after] = bracket.map(|end| end.sign());

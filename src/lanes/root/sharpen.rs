@@ -23,7 +23,7 @@ pub fn sharpened(coefficients: &[BigInt], ends: [f64; 2], bits: u32) -> Option<[
         let middle = low.plus(&high).shifted(-1);
         let point = Point::dyadic(&middle);
         let sign = simple.sign_at(&point);
-        // The sign tells on which side a single root is, the chain where the first of several is.
+        // The sign decides on which side a single root is, the chain where the first of several is.
         let before = if count > 1 {
             chain.count(&Point::dyadic(&low), &point)
         } else {

@@ -79,7 +79,7 @@ fn within<F: Enclosed>(
         }
         let gained = march.clear - before;
         let size = before.abs().max(end.abs());
-        // Four units in the last place: balls around points of such a distance are made of rounding.
+        // Four units in the last place: smaller steps are rounding errors of t.
         let resolution = 4.0 * f64::EPSILON * size;
         let stuck = gained <= 0.0 && step <= resolution;
         match march.opposite {
@@ -163,7 +163,7 @@ impl March {
                 return;
             }
             // Lower bounds of the radius and upper ones of the gap: the quotient and the
-            // differences are off by some 2⁻⁵³ of what they are made of.
+            // differences are off by some 2⁻⁵³ of their operands.
             let value = if sign > 0 { low } else { -high };
             let radius = if self.lipschitz > 0.0 {
                 value / self.lipschitz * (1.0 - 4.0 * f64::EPSILON)
@@ -177,7 +177,7 @@ impl March {
     }
 
     /// The end where balls have become too small to move on although a change of sign lies ahead:
-    /// the first opposite sign that can be told, unless the old sign comes back in between.
+    /// the first opposite sign that is certain, unless the old sign comes back in between.
     fn narrowed<F: Enclosed>(
         &mut self,
         function: &mut F,

@@ -20,7 +20,7 @@ pub(super) enum Value {
 pub(super) struct Builder {
     tape: Tape,
     spans: Vec<Range<usize>>,
-    /// The bytes of the text that write what is being added.
+    /// The bytes of the text that the operation being added comes from.
     pub span: Range<usize>,
 }
 
@@ -61,8 +61,8 @@ impl Builder {
         }
     }
 
-    /// A binary operation as it stands; sums, products, minima and maxima in one order, so that
-    /// both orders are one operation.
+    /// A binary operation without simplification; the operands of sums, products, minima and maxima are
+    /// sorted, so that both orders are one operation.
     fn push_binary(&mut self, function: Binary, a: Value, b: Value) -> Built {
         let (a, b) = (self.place(a)?, self.place(b)?);
         let commutes = matches!(

@@ -1,4 +1,4 @@
-//! What can be wrong with an expression.
+//! Errors of expressions.
 
 use std::ops::Range;
 
@@ -10,9 +10,9 @@ pub struct ExpressionError {
     pub problem: Problem,
     /// The bytes of the expression it is about; empty at its end.
     pub span: Range<usize>,
-    /// What would have been right there.
+    /// What the grammar allows there instead.
     pub expected: Option<String>,
-    /// Where a name is unknown, all that would have been known.
+    /// Where a name is unknown, all known names.
     pub names: Vec<String>,
 }
 
@@ -22,7 +22,7 @@ impl ExpressionError {
         self
     }
 
-    /// With the names that would have been known.
+    /// With all known names.
     pub(super) fn names<'a>(mut self, names: impl IntoIterator<Item = &'a str>) -> Self {
         self.names = names.into_iter().map(str::to_owned).collect();
         self
@@ -94,7 +94,7 @@ impl Problem {
         }
     }
 
-    /// What would have been right, where the kind alone says it.
+    /// What is allowed instead, where it follows from the kind of problem alone.
     fn expected(&self) -> Option<String> {
         let words = match self {
             Self::Empty | Self::Constant | Self::EverywhereZero => {

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! Numbers are the rationals they look like: `0.1` is one tenth and `9/80` is no double. Names are
-//! x, y, z, `pi` (as 4·atan 1, so that each arithmetic knows it as well as it can), parameters and
+//! x, y, z, `pi` (as 4·atan 1, so that each arithmetic has it as exactly as it can), parameters and
 //! the functions of [`FUNCTIONS`]. Operations on constants are done exactly where the result is
 //! rational, and left on the tape where it is not.
 

@@ -20,9 +20,9 @@ pub(super) struct Parser<'a> {
     builder: Builder,
 }
 
-/// What may stand where a value begins.
+/// What may begin a value.
 const VALUE: &str = "a number, a name, a function or \"(\"";
-/// What may stand where a value has ended.
+/// What may follow a value.
 const OPERATOR: &str = "one of + - * / ^";
 
 impl<'a> Parser<'a> {
@@ -212,7 +212,7 @@ impl<'a> Parser<'a> {
             return Err(Problem::NoCall(name.to_owned()).at(span));
         }
         let parameters = self.parameters.iter().map(|p| p.name.as_str());
-        // A misspelt function without its arguments is still best told its name.
+        // It may be a misspelt function without its arguments.
         let functions = FUNCTIONS.iter().map(|(name, _)| *name);
         let names = RESERVED.iter().copied().chain(parameters).chain(functions);
         Err(Problem::UnknownName(name.to_owned()).at(span).names(names))

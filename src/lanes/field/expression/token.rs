@@ -113,7 +113,7 @@ fn number_length(bytes: &[u8]) -> usize {
     length
 }
 
-/// The rational number a decimal says: an optional sign, digits, an optional point, an optional
+/// The rational number that a decimal denotes: an optional sign, digits, an optional point, an optional
 /// exponent. `None` where it is something else or beyond [`MOST_BITS`].
 pub fn rational(text: &str) -> Option<BigRational> {
     let (negative, unsigned) = match text.strip_prefix('-') {

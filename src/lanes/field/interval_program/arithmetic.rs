@@ -8,7 +8,7 @@ use crate::math::lanes::Real;
 
 /// An arithmetic that evaluates programs.
 pub trait Arithmetic<L: DoubleLanes>: Copy {
-    /// What may be any number.
+    /// The enclosure of which nothing is proved.
     fn anything(l: L) -> Self;
     fn constant(value: Interval<L>) -> Self;
     fn unary(self, function: Unary, domain: &mut Domain<L>) -> Self;

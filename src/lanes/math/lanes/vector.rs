@@ -1,4 +1,4 @@
-//! What vectors of both precisions have in common.
+//! The implementation that vectors of both precisions share.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{u8x16, u8x64};
