@@ -43,7 +43,7 @@ impl Mul for Bounded {
 /// by `blur` and its own rounding.
 pub fn gradient(field: &Field, point: DVec3, blur: f64) -> (DVec3, f64) {
     let numbers = Numbers {
-        constants: field.constants(),
+        constants: &field.constants,
         point,
         blur,
     };

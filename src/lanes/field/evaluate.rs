@@ -16,7 +16,8 @@ use crate::math::vec3::Vec3;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field<T = f64> {
     tape: Tape,
-    constants: Vec<T>,
+    /// By index on the tape, each the nearest of its type.
+    pub(super) constants: Vec<T>,
 }
 
 impl<T: Scalar> Field<T> {
@@ -79,11 +80,6 @@ impl<T: Scalar> Field<T> {
 impl Field {
     pub fn tape(&self) -> &Tape {
         &self.tape
-    }
-
-    /// The constants by index, each the nearest f64.
-    pub fn constants(&self) -> &[f64] {
-        &self.constants
     }
 
     /// f(p); NaN where it is undefined.

@@ -68,6 +68,7 @@ macro_rules! one {
             methods! {
                 fn instructions(self) -> Instructions = Instructions::Scalar;
                 fn narrow(self) -> Self = self;
+                fn vectorize<R>(self, f: impl FnOnce() -> R) -> R = f();
                 fn real(self, x: f64) -> $scalar = x as $scalar;
                 fn splat(self, x: $scalar) -> $scalar = x;
                 fn int(self, x: u32) -> u32 = x;
@@ -87,10 +88,6 @@ macro_rules! one {
                 fn select_int(self, m: bool, a: u32, b: u32) -> u32 = if m { a } else { b };
                 fn compress_into(self, x: $scalar, _: bool, to: &mut [$scalar]) -> () = to[0] = x;
                 fn compress_int_into(self, x: u32, _: bool, to: &mut [u32]) -> () = to[0] = x;
-            }
-            #[inline(always)]
-            fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
-                f()
             }
             #[inline(always)]
             fn split_exponent(self, x: $scalar) -> ($scalar, $scalar) {

@@ -14,11 +14,6 @@ pub struct Vec3<R> {
 }
 
 impl<R: Real> Vec3<R> {
-    #[inline(always)]
-    pub fn new(x: R, y: R, z: R) -> Self {
-        Self { x, y, z }
-    }
-
     /// The same vector, rounded, in every lane.
     #[inline(always)]
     pub fn splat<L: Lanes<Real = R>>(l: L, v: DVec3) -> Self {
@@ -26,6 +21,7 @@ impl<R: Real> Vec3<R> {
     }
 
     methods! {
+        pub fn new(x: R, y: R, z: R) -> Self = Self { x, y, z };
         pub fn dot(self, b: Self) -> R = self.x.mul_add(b.x, self.y.mul_add(b.y, self.z * b.z));
         pub fn length_squared(self) -> R = self.dot(self);
         pub fn scale(self, s: R) -> Self = Self::new(self.x * s, self.y * s, self.z * s);

@@ -104,6 +104,8 @@ impl<L: Lanes<Scalar = f64>> Word<L> for Pair<L> {
     methods! {
         fn real(l: L, x: L::Real) -> Self = Self::new(x, l.real(0.0));
         fn constant(l: L, [high, low]: [f64; 2]) -> Self = Self::new(l.real(high), l.real(low));
+        fn load(l: L, rows: &[Row], i: usize) -> Self =
+            Self::new(l.load(&rows[2 * i].0), l.load(&rows[2 * i + 1].0));
         fn minus(self, other: Self) -> Self = self.plus(Self::new(-other.high, -other.low));
         fn fused(self, a: Self, b: Self) -> Self = self.times(a).plus(b);
         fn head(self) -> L::Real = self.high;
@@ -129,10 +131,6 @@ impl<L: Lanes<Scalar = f64>> Word<L> for Pair<L> {
     fn select(l: L, mask: L::Mask, a: Self, b: Self) -> Self {
         let low = l.select(mask, a.low, b.low);
         Self::new(l.select(mask, a.high, b.high), low)
-    }
-    #[inline(always)]
-    fn load(l: L, rows: &[Row], i: usize) -> Self {
-        Self::new(l.load(&rows[2 * i].0), l.load(&rows[2 * i + 1].0))
     }
     #[inline(always)]
     fn store(self, l: L, rows: &mut [Row], i: usize) {
