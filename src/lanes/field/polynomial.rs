@@ -63,12 +63,6 @@ impl Polynomial {
         Self::new([([0; 3], value.numer().clone())], value.denom().clone())
     }
 
-    pub fn coordinate(axis: usize) -> Self {
-        let mut exponents = [0; 3];
-        exponents[axis] = 1;
-        Self::new([(exponents, BigInt::one())], BigInt::one())
-    }
-
     /// The field of a tape, where it is built from sums, differences, products and whole powers
     /// alone and neither its degree exceeds [`MOST_DEGREE`] nor multiplying it out a bound on
     /// work.
@@ -151,7 +145,9 @@ impl Algebra for Recognition {
     type Value = Option<Polynomial>;
 
     fn coordinate(&self, axis: usize) -> Self::Value {
-        Some(Polynomial::coordinate(axis))
+        let mut exponents = [0; 3];
+        exponents[axis] = 1;
+        Some(Polynomial::new([(exponents, BigInt::one())], BigInt::one()))
     }
 
     fn constant(&self, _: usize, exact: &BigRational) -> Self::Value {

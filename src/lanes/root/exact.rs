@@ -1,7 +1,7 @@
 //! The first root of a polynomial with integer coefficients, decided exactly.
 //!
 //! Sturm's theorem counts the distinct roots of the square-free part in an interval; the first one
-//! is isolated by bisection at f64 points and enclosed by exact signs.
+//! is isolated by bisection at f64 points and enclosed by exact signs, beyond f64 where asked.
 
 use std::cmp::Ordering;
 
@@ -91,26 +91,22 @@ pub struct ExactRoot {
 
 /// A polynomial, lowest power first, without leading zeros.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Polynomial(Vec<BigInt>);
+struct Polynomial(Vec<BigInt>);
 
 impl Polynomial {
-    pub(super) fn new(mut coefficients: Vec<BigInt>) -> Self {
+    fn new(mut coefficients: Vec<BigInt>) -> Self {
         while coefficients.last().is_some_and(Zero::is_zero) {
             coefficients.pop();
         }
         Self(coefficients)
     }
 
-    fn is_zero(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    pub(super) fn degree(&self) -> usize {
+    fn degree(&self) -> usize {
         self.0.len().saturating_sub(1)
     }
 
     /// Without the powers of two that its coefficients have in common.
-    pub(super) fn without_twos(mut self) -> Self {
+    fn without_twos(mut self) -> Self {
         let twos = self.0.iter().filter_map(BigInt::trailing_zeros).min();
         for c in &mut self.0 {
             *c >>= twos.unwrap_or(0);
@@ -149,7 +145,7 @@ impl Polynomial {
         sum
     }
 
-    pub(super) fn sign_at(&self, point: &Point) -> Sign {
+    fn sign_at(&self, point: &Point) -> Sign {
         self.at(point).sign()
     }
 
@@ -201,7 +197,7 @@ impl Polynomial {
     }
 }
 
-pub(super) struct Chain(Vec<Polynomial>);
+struct Chain(Vec<Polynomial>);
 
 impl Chain {
     /// Remainders with changed signs, divided by the common factor of subresultants, which is known
@@ -210,7 +206,7 @@ impl Chain {
         let mut chain = vec![polynomial.clone(), polynomial.derivative()];
         let (mut g, mut h) = (BigInt::one(), BigInt::one());
         while let [.., a, b] = chain.as_slice() {
-            if b.is_zero() {
+            if b.0.is_empty() {
                 chain.pop();
                 break;
             }
@@ -243,22 +239,22 @@ impl Chain {
     }
 
     /// Distinct roots in (low, high]; for a square-free polynomial.
-    pub(super) fn count(&self, low: &Point, high: &Point) -> usize {
+    fn count(&self, low: &Point, high: &Point) -> usize {
         self.changes(low).saturating_sub(self.changes(high))
     }
 }
 
 /// A polynomial whose roots are all simple, and what was divided out.
-pub(super) struct SquareFree {
-    pub simple: Polynomial,
-    pub chain: Chain,
+struct SquareFree {
+    simple: Polynomial,
+    chain: Chain,
     /// The divisor: every root of the original as often as it was one, less one.
-    pub common: Polynomial,
+    common: Polynomial,
 }
 
 impl SquareFree {
     /// The square-free part of a polynomial; `None` where it is a constant.
-    pub fn of(coefficients: &[BigInt]) -> Option<Self> {
+    fn of(coefficients: &[BigInt]) -> Option<Self> {
         let whole = Polynomial::new(coefficients.to_vec()).without_twos();
         if whole.degree() == 0 {
             return None;
@@ -477,4 +473,39 @@ fn leading(x: &BigInt) -> (f64, i64) {
     let bits = x.bits() as i64;
     let scaled = Exact::integer(x.abs()).shifted(-bits);
     (scaled.to_f64(), bits)
+}
+
+/// The first root in [low, high], within 2⁻ᵇ of the interval's width; twice the same where it is met
+/// exactly, and `None` where there is none. The coefficients stand lowest power first.
+pub fn sharpened(coefficients: &[BigInt], ends: [f64; 2], bits: u32) -> Option<[Exact; 2]> {
+    let SquareFree { simple, chain, .. } = SquareFree::of(coefficients)?;
+    let [mut low, mut high] = ends.map(Exact::of);
+    if simple.sign_at(&Point::dyadic(&low)) == Sign::NoSign {
+        return Some([low.clone(), low]);
+    }
+    let mut count = chain.count(&Point::dyadic(&low), &Point::dyadic(&high));
+    let mut at_high = simple.sign_at(&Point::dyadic(&high));
+    for _ in 0..bits {
+        if count == 0 {
+            return None;
+        }
+        let middle = low.plus(&high).shifted(-1);
+        let point = Point::dyadic(&middle);
+        let sign = simple.sign_at(&point);
+        // The sign decides on which side a single root is, the chain where the first of several is.
+        let before = if count > 1 {
+            chain.count(&Point::dyadic(&low), &point)
+        } else {
+            usize::from(sign == at_high || sign == Sign::NoSign)
+        };
+        if before == 0 {
+            low = middle;
+            continue;
+        }
+        if before == 1 && sign == Sign::NoSign {
+            return Some([middle.clone(), middle]);
+        }
+        (high, count, at_high) = (middle, before, sign);
+    }
+    Some([low, high])
 }

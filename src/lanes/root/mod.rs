@@ -5,10 +5,8 @@
 //! stretch of t: rays and surfaces are not known here.
 
 pub mod bernstein;
-pub mod departure;
 pub mod exact;
 pub mod interval;
-pub mod sharpen;
 pub mod sign_change;
 pub mod sphere_trace;
 

@@ -11,8 +11,7 @@ use crate::math::double_double::DoubleDouble;
 use crate::math::instructions::{DoubleLanes, Instructions, Job};
 use crate::math::interval::ScalarInterval;
 use crate::math::scalar_lane::One;
-use crate::root::departure::departure;
-use crate::root::interval::{self, Search};
+use crate::root::interval::{self, Search, departure};
 use crate::root::{Outcome, Root, sphere_trace};
 use crate::shape::line::LocalRay;
 
