@@ -82,11 +82,15 @@ macro_rules! kinds {
 
 /// Methods of one expression each, always inlined, as those of lanes must be.
 macro_rules! methods {
-    ($($(#[$attribute:meta])* $visibility:vis fn $method:ident $arguments:tt -> $result:ty = $value:expr;)*) => {
+    ($(
+        $(#[$attribute:meta])*
+        $visibility:vis fn $method:ident $(<$generic:ident>)? ($($argument:tt)*) -> $result:ty
+            = $value:expr;
+    )*) => {
         $(
             $(#[$attribute])*
             #[inline(always)]
-            $visibility fn $method $arguments -> $result {
+            $visibility fn $method $(<$generic>)? ($($argument)*) -> $result {
                 $value
             }
         )*

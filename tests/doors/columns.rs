@@ -1,12 +1,23 @@
 //! Functions of lane reals, applied to columns of numbers.
 
-use etalon_lanes::math::instructions::Job;
+use etalon_lanes::math::instructions::{Instructions, Job, Precision};
 use etalon_lanes::math::lanes::{Lanes, Scalar, WIDEST};
 use etalon_lanes::math::packet::array;
 use etalon_lanes::math::vec3::Vec3;
 use etalon_lanes::shape::Ray;
 use etalon_lanes::shape::lanes::LaneRay;
 use glam::DVec3;
+
+/// Does a job in one of the two precisions.
+pub fn run_in<J, O>(set: Instructions, precision: Precision, job: J) -> O
+where
+    J: Job<f32, Output = O> + Job<f64, Output = O>,
+{
+    match precision {
+        Precision::Single => set.run::<f32, J>(job),
+        Precision::Double => set.run::<f64, J>(job),
+    }
+}
 
 /// A function of `I` reals with `O` results.
 pub trait Kernel<const I: usize, const O: usize> {
@@ -63,7 +74,7 @@ macro_rules! columns {
                     [$($x),+]: [L::Real; $in],
                 ) -> [L::Real; $out] $body
             }
-            set.run_in(precision, $crate::columns::Columns { kernel: Function, input })
+            $crate::columns::run_in(set, precision, $crate::columns::Columns { kernel: Function, input })
         }
     )+};
 }

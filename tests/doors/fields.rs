@@ -1,6 +1,6 @@
 //! Fields of implicit surfaces.
 
-use etalon_lanes::field::evaluate::{Field, Scratch};
+use etalon_lanes::field::evaluate::Field;
 use etalon_lanes::field::tape::Tape;
 use etalon_lanes::math::instructions::{Instructions, Precision};
 use etalon_lanes::math::lanes::Lanes;
@@ -19,7 +19,7 @@ pub fn values_and_gradients(
         kernel: Evaluation(tape),
         input: points,
     };
-    set.run_in(precision, job)
+    crate::columns::run_in(set, precision, job)
 }
 
 struct Evaluation<'a>(&'a Tape);
@@ -29,7 +29,7 @@ impl Kernel<3, 4> for Evaluation<'_> {
     fn apply<L: Lanes>(&self, l: L, [x, y, z]: [L::Real; 3]) -> [L::Real; 4] {
         let field = Field::<L::Scalar>::new(self.0);
         let p = Vec3::new(x, y, z);
-        let [value] = field.values(l, [p], &mut Scratch::default());
+        let [value] = field.values(l, [p], &mut Vec::new());
         let gradient = field.with_gradient(l, p).1;
         [value, gradient.x, gradient.y, gradient.z]
     }

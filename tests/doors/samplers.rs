@@ -48,7 +48,7 @@ pub fn sample_numbers(
         numbers,
         samples,
     };
-    set.run_in(precision, job)
+    crate::columns::run_in(set, precision, job)
 }
 
 struct SampleNumbers<'a> {
@@ -118,7 +118,7 @@ pub fn shuffled(
     shuffle: Shuffle,
     words: &[[u32; 2]],
 ) -> Vec<u32> {
-    set.run_in(precision, Shuffled(shuffle, words))
+    crate::columns::run_in(set, precision, Shuffled(shuffle, words))
 }
 
 struct Shuffled<'a>(Shuffle, &'a [[u32; 2]]);

@@ -28,7 +28,7 @@ pub struct RaySpan {
 
 /// Spans of rays, each with its shape.
 pub fn spans(set: Instructions, precision: Precision, cases: &[(&Placed, Ray)]) -> Vec<RaySpan> {
-    set.run_in(precision, Spans(cases))
+    crate::columns::run_in(set, precision, Spans(cases))
 }
 
 struct Spans<'a>(&'a [(&'a Placed, Ray)]);

@@ -29,7 +29,7 @@ pub struct Results {
 /// If the number of words is no multiple of [`WIDEST`].
 pub fn operations(set: Instructions, precision: Precision, a: &[u32], b: &[u32]) -> Results {
     assert!(a.len() == b.len() && a.len().is_multiple_of(WIDEST));
-    set.run_in(precision, Operations { a, b })
+    crate::columns::run_in(set, precision, Operations { a, b })
 }
 
 struct Operations<'a> {

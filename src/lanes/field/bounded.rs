@@ -1,5 +1,5 @@
 //! Numbers that carry a bound of their own rounding error (Higham 2002, ch. 3.3: running error
-//! analysis), to tell a gradient from the noise of its evaluation.
+//! analysis), to distinguish a gradient from the noise of its evaluation.
 
 use std::ops::Mul;
 
@@ -43,7 +43,7 @@ impl Mul for Bounded {
 /// by `blur` and its own rounding.
 pub fn gradient(field: &Field, point: DVec3, blur: f64) -> (DVec3, f64) {
     let numbers = Numbers {
-        constants: field.constants(),
+        constants: &field.constants,
         point,
         blur,
     };
@@ -132,16 +132,17 @@ impl Differentiable for Numbers<'_> {
     }
 
     fn where_negative(&self, s: &Bounded, below: &Bounded, above: &Bounded) -> Bounded {
-        let chosen = if s.value < 0.0 { below } else { above };
-        let other = if s.value < 0.0 { above } else { below };
+        let negative = s.value < 0.0;
+        let (chosen, other) = if negative {
+            (below, above)
+        } else {
+            (above, below)
+        };
         let mut error = chosen.error;
         if s.value.abs() <= s.error {
             // It may be the other one.
             error = error.max((chosen.value - other.value).abs() + other.error);
         }
-        Bounded {
-            value: chosen.value,
-            error,
-        }
+        Bounded { error, ..*chosen }
     }
 }

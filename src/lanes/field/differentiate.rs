@@ -1,6 +1,6 @@
 //! Gradients of tapes by automatic differentiation, forward (Griewank and Walther 2008, ch. 3).
 //!
-//! Any arithmetic that can evaluate a tape and tell a sign can carry the three derivatives along.
+//! Any arithmetic that can evaluate a tape and decide signs can carry the three derivatives along.
 //! A derivative that is zero by construction is not carried at all, so that it costs nothing and
 //! never meets the infinite slope of some function at a constant.
 
@@ -8,7 +8,7 @@ use num_rational::BigRational;
 
 use super::tape::{Algebra, Binary, Unary};
 
-/// What an arithmetic needs besides, for derivatives.
+/// An arithmetic that can also evaluate derivatives.
 pub trait Differentiable: Algebra {
     /// A number that is exact in f64.
     fn number(&self, x: f64) -> Self::Value;
@@ -134,19 +134,15 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
 
     #[inline(always)]
     fn coordinate(&self, axis: usize) -> Self::Value {
+        let value = self.0.coordinate(axis);
         let gradient = three(inlined!(|i: usize| (i == axis).then(|| self.0.number(1.0))));
-        WithGradient {
-            value: self.0.coordinate(axis),
-            gradient,
-        }
+        WithGradient { value, gradient }
     }
 
     #[inline(always)]
     fn constant(&self, index: usize, exact: &BigRational) -> Self::Value {
-        WithGradient {
-            value: self.0.constant(index, exact),
-            gradient: [None, None, None],
-        }
+        let (value, gradient) = (self.0.constant(index, exact), [None, None, None]);
+        WithGradient { value, gradient }
     }
 
     #[inline(always)]

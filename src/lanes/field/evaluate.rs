@@ -16,16 +16,8 @@ use crate::math::vec3::Vec3;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field<T = f64> {
     tape: Tape,
-    constants: Vec<T>,
-}
-
-/// Room for the results of a tape at `W` packets, so that they need not be allocated each time.
-pub struct Scratch<L: Lanes, const W: usize>(Vec<[L::Real; W]>);
-
-impl<L: Lanes, const W: usize> Default for Scratch<L, W> {
-    fn default() -> Self {
-        Self(Vec::new())
-    }
+    /// By index on the tape, each the nearest of its type.
+    pub(super) constants: Vec<T>,
 }
 
 impl<T: Scalar> Field<T> {
@@ -37,15 +29,15 @@ impl<T: Scalar> Field<T> {
     }
 
     /// The field at object points, negative inside; NaN where it is undefined. Several packets
-    /// at once share the work of reading the tape.
+    /// at once share the work of reading the tape; `scratch` has room for its results.
     #[inline(always)]
     pub fn values<L: Lanes<Scalar = T>, const W: usize>(
         &self,
         l: L,
         points: [Vec3<L::Real>; W],
-        scratch: &mut Scratch<L, W>,
+        scratch: &mut Vec<[L::Real; W]>,
     ) -> [L::Real; W] {
-        let values = self.tape.evaluate(&self.at(l, points), &mut scratch.0);
+        let values = self.tape.evaluate(&self.at(l, points), scratch);
         values.unwrap_or_else(|| [l.real(f64::NAN); W])
     }
 
@@ -90,14 +82,9 @@ impl Field {
         &self.tape
     }
 
-    /// The constants by index, each the nearest f64.
-    pub fn constants(&self) -> &[f64] {
-        &self.constants
-    }
-
     /// f(p); NaN where it is undefined.
     pub fn value(&self, p: DVec3) -> f64 {
-        let [value] = self.values(One, [Vec3::splat(One, p)], &mut Scratch::default());
+        let [value] = self.values(One, [Vec3::splat(One, p)], &mut Vec::new());
         value
     }
 
@@ -141,23 +128,6 @@ fn by_lane<L: Lanes>(l: L, a: L::Real, f: impl Fn(usize, f64) -> f64) -> L::Real
     result
 }
 
-/// A function of two values, computed in lanes where it is one of arithmetic.
-#[inline(always)]
-fn of_two<L: Lanes>(l: L, function: Binary, a: L::Real, b: L::Real) -> L::Real {
-    match function {
-        Binary::Sum => a + b,
-        Binary::Difference => a - b,
-        Binary::Product => a * b,
-        Binary::Quotient => a / b,
-        Binary::Minimum => a.min(b),
-        Binary::Maximum => a.max(b),
-        Binary::ArcTangent2 | Binary::Power => by_lane(l, a, |i, x| {
-            let y = l.lane(b, i).to_f64();
-            binary(function, x, y)
-        }),
-    }
-}
-
 impl<L: Lanes, const W: usize> Packets<'_, L, W> {
     #[inline(always)]
     fn each(&self, f: impl Fn(usize) -> L::Real) -> [L::Real; W] {
@@ -188,19 +158,26 @@ impl<L: Lanes, const W: usize> Algebra for Packets<'_, L, W> {
 
     #[inline(always)]
     fn binary(&self, function: Binary, a: &Self::Value, b: &Self::Value) -> Self::Value {
-        // The function is told apart once, not for each packet.
-        macro_rules! known {
-            ($function:expr) => {
-                self.each(inlined!(|i: usize| of_two(
-                    self.lanes, $function, a[i], b[i]
-                )))
+        // Chosen once, not for each packet.
+        macro_rules! each {
+            (|$x:ident, $y:ident| $value:expr) => {
+                self.each(inlined!(|i: usize| {
+                    let ($x, $y) = (a[i], b[i]);
+                    $value
+                }))
             };
         }
+        let l = self.lanes;
         match function {
-            Binary::Sum => known!(Binary::Sum),
-            Binary::Difference => known!(Binary::Difference),
-            Binary::Product => known!(Binary::Product),
-            _ => known!(function),
+            Binary::Sum => each!(|x, y| x + y),
+            Binary::Difference => each!(|x, y| x - y),
+            Binary::Product => each!(|x, y| x * y),
+            Binary::Quotient => each!(|x, y| x / y),
+            Binary::Minimum => each!(|x, y| x.min(y)),
+            Binary::Maximum => each!(|x, y| x.max(y)),
+            Binary::ArcTangent2 | Binary::Power => {
+                each!(|x, y| by_lane(l, x, |i, x| { binary(function, x, l.lane(y, i).to_f64()) }))
+            }
         }
     }
 

@@ -1,5 +1,5 @@
-//! A tape made ready for intervals: constants enclosed once, and operations told apart that can
-//! be cheaper or tighter than they look (squares, multiples, sine with cosine).
+//! A tape prepared for intervals: constants are enclosed once, and operations that have a cheaper or
+//! tighter form are recognised (squares, multiples, sine with cosine).
 //!
 //! Evaluated over any lanes of f64, as a value alone or with its slope along a line.
 
@@ -9,9 +9,7 @@ mod compiler;
 use super::tape::{Binary, Place, Tape, Unary};
 use crate::math::instructions::DoubleLanes;
 use crate::math::interval::{Domain, Interval};
-use crate::math::jet::Jet;
-use arithmetic::Arithmetic;
-pub use arithmetic::Side;
+pub use arithmetic::{Arithmetic, Side};
 use compiler::Compiler;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +36,7 @@ pub struct IntervalProgram {
 
 impl IntervalProgram {
     pub fn new(tape: &Tape) -> Self {
-        Compiler::new(tape).run()
+        Compiler::compiled(tape)
     }
 
     /// Whether the field is defined and continuous everywhere, whatever its operands are.
@@ -66,35 +64,20 @@ impl IntervalProgram {
         self.steps.len()
     }
 
-    /// An enclosure of the field over a box; the whole line for an empty program. A stage: one copy
-    /// for each instruction set.
+    /// An enclosure of the field over a box, and of its slope along those of the coordinates where
+    /// they have any; the whole line for an empty program. A stage: one copy for each instruction
+    /// set.
     #[inline(never)]
-    pub fn value<L: DoubleLanes>(
+    pub fn value<L: DoubleLanes, A: Arithmetic<L>>(
         &self,
         l: L,
-        coordinates: &[Interval<L>; 3],
-        registers: &mut Vec<Interval<L>>,
-    ) -> (Interval<L>, Domain<L>) {
+        coordinates: &[A; 3],
+        registers: &mut Vec<A>,
+    ) -> (A, Domain<L>) {
         l.vectorize(inlined!(|| {
             let mut domain = Domain::unbroken(l);
-            let value = self.run(l, coordinates, Interval::whole(l), registers, &mut domain);
+            let value = self.run(l, coordinates, registers, &mut domain);
             (value, domain)
-        }))
-    }
-
-    /// Enclosures of the field and of its slope along the coordinates' own slopes. A stage, too.
-    #[inline(never)]
-    pub fn jet<L: DoubleLanes>(
-        &self,
-        l: L,
-        coordinates: &[Jet<L>; 3],
-        registers: &mut Vec<Jet<L>>,
-    ) -> (Jet<L>, Domain<L>) {
-        l.vectorize(inlined!(|| {
-            let anything = Jet::new(Interval::whole(l), Interval::whole(l));
-            let mut domain = Domain::unbroken(l);
-            let jet = self.run(l, coordinates, anything, registers, &mut domain);
-            (jet, domain)
         }))
     }
 
@@ -113,8 +96,7 @@ impl IntervalProgram {
             let mut domain = Domain::with_sides(l, place);
             let [x, y, z] = *coordinates;
             let coordinates = [Side(x), Side(y), Side(z)];
-            let anything = Side(Interval::whole(l));
-            let value = self.run(l, &coordinates, anything, registers, &mut domain);
+            let value = self.run(l, &coordinates, registers, &mut domain);
             (value.0, domain.void)
         }))
     }
@@ -124,7 +106,6 @@ impl IntervalProgram {
         &self,
         l: L,
         coordinates: &[A; 3],
-        anything: A,
         registers: &mut Vec<A>,
         domain: &mut Domain<L>,
     ) -> A {
@@ -149,6 +130,6 @@ impl IntervalProgram {
             };
             registers.push(value);
         }
-        registers.last().copied().unwrap_or(anything)
+        registers.last().copied().unwrap_or(A::anything(l))
     }
 }

@@ -16,6 +16,5 @@ pub mod outer;
 pub mod over_box;
 pub mod polynomial;
 pub mod program;
-pub mod rational;
 pub mod structure;
 pub mod tape;

@@ -30,7 +30,7 @@ use super::evaluate::Field;
 /// milliradian, less than a picture shows.
 const NOISE: f64 = 1.0 / 1024.0;
 /// The same where an enclosure of the hit is known: an angle that six printed digits do not show. Most
-/// errors are far below, for the bound adds up what hardly ever goes the same way.
+/// errors are far below, for the bound adds up errors that hardly ever have the same sign.
 pub const SHARP: f64 = 1.0 / (1u64 << 22) as f64;
 /// First distance to look beside a point, relative to the size of the clip box: half the digits,
 /// so that a root's own rounding, 2⁻⁵², is as small against it as it is against 1.

@@ -1,5 +1,4 @@
-//! What can be proved of a field over a box: that it is undefined, that it has no zero, how steep
-//! it is at most.
+//! Proofs about a field over a box: that it is undefined, that it has no zero, a bound of its slope.
 
 use glam::DVec3;
 
@@ -45,18 +44,6 @@ struct Survey<'a> {
     inside: &'a [DVec3; 2],
 }
 
-impl Survey<'_> {
-    /// The edges of the parts along an axis; the outermost are those of the box.
-    fn edge(&self, axis: usize, i: usize) -> f64 {
-        let [low, high] = self.inside.map(|corner| corner[axis]);
-        match i {
-            0 => low,
-            PARTS => high,
-            _ => low + (high - low) * (i as f64 / PARTS as f64),
-        }
-    }
-}
-
 impl Job<f64> for Survey<'_> {
     type Output = OverBox;
 
@@ -70,8 +57,15 @@ impl Job<f64> for Survey<'_> {
             steepness: 0.0,
         };
         let every = l.mask(true).bits();
-        let edges: [[f64; PARTS + 1]; 3] =
-            [0, 1, 2].map(|axis| std::array::from_fn(|i| self.edge(axis, i)));
+        // The edges of the parts along each axis; the outermost are those of the box.
+        let edges: [[f64; PARTS + 1]; 3] = [0, 1, 2].map(|axis| {
+            let [low, high] = self.inside.map(|corner| corner[axis]);
+            std::array::from_fn(|i| match i {
+                0 => low,
+                PARTS => high,
+                _ => low + (high - low) * (i as f64 / PARTS as f64),
+            })
+        });
         for part in 0..PARTS * PARTS {
             let (y, z) = (part / PARTS, part % PARTS);
             for x in (0..PARTS).step_by(L::COUNT) {
@@ -83,7 +77,7 @@ impl Job<f64> for Survey<'_> {
                 let mut squares = Interval::splat(l, [0.0, 0.0]);
                 for axis in 0..3 {
                     let along = coordinates(&place, axis);
-                    let (jet, domain) = self.program.jet(l, &along, &mut registers);
+                    let (jet, domain) = self.program.value(l, &along, &mut registers);
                     squares = squares + jet.slope.squared();
                     known.undefined &= domain.void.bits() == every;
                     known.maybe_undefined |= domain.broken.bits() != 0;

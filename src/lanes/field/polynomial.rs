@@ -13,7 +13,7 @@ use super::tape::{Algebra, Binary, Tape, Unary};
 /// Exponents of x, y and z.
 pub type Exponents = [u32; 3];
 
-/// Highest total degree that is recognised.
+/// Highest total degree that is recognised: more than any finder of roots takes, and a bound on work.
 pub const MOST_DEGREE: u32 = 64;
 /// Most products of two terms that recognising may take: some tenths of a second.
 const MOST_PRODUCTS: u64 = 1 << 21;
@@ -30,26 +30,37 @@ pub struct Polynomial {
 
 impl Polynomial {
     /// Integer coefficients by exponents, over a common denominator other than zero.
-    pub fn new(terms: impl IntoIterator<Item = (Exponents, BigInt)>, denominator: BigInt) -> Self {
+    pub fn new(
+        terms: impl IntoIterator<Item = (Exponents, BigInt)>,
+        mut denominator: BigInt,
+    ) -> Self {
         let mut sums = BTreeMap::<Exponents, BigInt>::new();
         for (exponents, coefficient) in terms {
             *sums.entry(exponents).or_default() += coefficient;
+        }
+        sums.retain(|_, c| !c.is_zero());
+        let mut common = denominator.clone();
+        for coefficient in sums.values() {
+            if common.abs().is_one() {
+                break;
+            }
+            common = common.gcd(coefficient);
+        }
+        if denominator.is_negative() != common.is_negative() {
+            common = -common;
+        }
+        if !common.is_one() {
+            sums.values_mut().for_each(|c| *c /= &common);
+            denominator /= common;
         }
         Self {
             terms: sums,
             denominator,
         }
-        .reduced()
     }
 
     pub fn constant(value: &BigRational) -> Self {
         Self::new([([0; 3], value.numer().clone())], value.denom().clone())
-    }
-
-    pub fn coordinate(axis: usize) -> Self {
-        let mut exponents = [0; 3];
-        exponents[axis] = 1;
-        Self::new([(exponents, BigInt::one())], BigInt::one())
     }
 
     /// The field of a tape, where it is built from sums, differences, products and whole powers
@@ -60,27 +71,6 @@ impl Polynomial {
             budget: Cell::new(MOST_PRODUCTS),
         };
         tape.evaluate(&recognition, &mut Vec::new())?
-    }
-
-    fn reduced(mut self) -> Self {
-        self.terms.retain(|_, c| !c.is_zero());
-        let mut common = self.denominator.clone();
-        for coefficient in self.terms.values() {
-            if common.abs().is_one() {
-                break;
-            }
-            common = common.gcd(coefficient);
-        }
-        if self.denominator.is_negative() != common.is_negative() {
-            common = -common;
-        }
-        if !common.is_one() {
-            for coefficient in self.terms.values_mut() {
-                *coefficient /= &common;
-            }
-            self.denominator /= common;
-        }
-        self
     }
 
     /// Coefficients other than zero, in lexical order of the exponents.
@@ -136,7 +126,7 @@ impl Polynomial {
     }
 }
 
-/// Tapes in the arithmetic of polynomials; `None` stands for what is none.
+/// The arithmetic of polynomials; `None` is a result that is no polynomial within the limits.
 struct Recognition {
     /// Products of terms that may yet be formed.
     budget: Cell<u64>,
@@ -155,7 +145,9 @@ impl Algebra for Recognition {
     type Value = Option<Polynomial>;
 
     fn coordinate(&self, axis: usize) -> Self::Value {
-        Some(Polynomial::coordinate(axis))
+        let mut exponents = [0; 3];
+        exponents[axis] = 1;
+        Some(Polynomial::new([(exponents, BigInt::one())], BigInt::one()))
     }
 
     fn constant(&self, _: usize, exact: &BigRational) -> Self::Value {

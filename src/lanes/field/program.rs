@@ -18,6 +18,7 @@ use num_rational::BigRational;
 use num_traits::{CheckedAdd, CheckedMul, One, ToPrimitive, Zero};
 
 use super::tape::{Binary, Operation, Tape, Unary};
+use crate::math::exact::Exact;
 use crate::math::number::Number;
 
 /// Largest degree along a line; beyond, fields are treated like any other expression.
@@ -84,7 +85,20 @@ impl Program {
         let field = values.last()?;
         let degree = algebra.degree(field);
         let raised = *degrees.iter().find(|d| **d >= degree)?;
-        Emission::new(&algebra).program(field, raised)
+        let mut emission = Emission {
+            algebra: &algebra,
+            steps: Vec::new(),
+            atoms: vec![None; algebra.atoms.len()],
+            combinations: Vec::new(),
+            rows: 0,
+        };
+        let result = emission.combination(field, raised).form;
+        let Emission { steps, rows, .. } = emission;
+        (rows <= MOST_ROWS).then_some(Self {
+            steps,
+            result,
+            rows,
+        })
     }
 
     pub fn steps(&self) -> &[Step] {
@@ -277,12 +291,8 @@ impl Algebra {
     }
 
     fn degree(&self, linear: &Linear) -> usize {
-        linear
-            .terms
-            .iter()
-            .map(|(atom, _)| self.degrees[*atom])
-            .max()
-            .unwrap_or(0)
+        let degrees = linear.terms.iter().map(|(atom, _)| self.degrees[*atom]);
+        degrees.max().unwrap_or(0)
     }
 
     fn product(&mut self, a: &Linear, b: &Linear) -> Option<Linear> {
@@ -339,27 +349,7 @@ struct Emission<'a> {
     rows: usize,
 }
 
-impl<'a> Emission<'a> {
-    fn new(algebra: &'a Algebra) -> Self {
-        Self {
-            algebra,
-            steps: Vec::new(),
-            atoms: vec![None; algebra.atoms.len()],
-            combinations: Vec::new(),
-            rows: 0,
-        }
-    }
-
-    /// The field is raised to a degree that the solver is compiled for.
-    fn program(mut self, field: &Linear, degree: usize) -> Option<Program> {
-        let result = self.combination(field, degree).form;
-        (self.rows <= MOST_ROWS).then_some(Program {
-            steps: self.steps,
-            result,
-            rows: self.rows,
-        })
-    }
-
+impl Emission<'_> {
     fn room(&mut self, degree: usize) -> Form {
         let at = self.rows;
         self.rows += degree + 1;
@@ -371,30 +361,21 @@ impl<'a> Emission<'a> {
             return placed.clone();
         }
         let algebra = self.algebra;
-        let placed = match &algebra.atoms[index] {
+        let (form, denominator) = match &algebra.atoms[index] {
             Atom::Coordinate(axis) => {
                 let to = self.room(1);
                 self.steps.push(Step::Coordinate { axis: *axis, to });
-                Placed {
-                    form: to,
-                    denominator: BigInt::one(),
-                }
+                (to, BigInt::one())
             }
             Atom::Product(a, b) => {
-                let (a, b) = (self.linear(a), self.linear(b));
-                let to = self.room(a.form.degree + b.form.degree);
-                let (form_a, form_b) = (a.form, b.form);
-                self.steps.push(Step::Product {
-                    a: form_a,
-                    b: form_b,
-                    to,
-                });
-                Placed {
-                    form: to,
-                    denominator: a.denominator * b.denominator,
-                }
+                let (left, right) = (self.linear(a), self.linear(b));
+                let (a, b) = (left.form, right.form);
+                let to = self.room(a.degree + b.degree);
+                self.steps.push(Step::Product { a, b, to });
+                (to, left.denominator * right.denominator)
             }
         };
+        let placed = Placed { form, denominator };
         self.atoms[index] = Some(placed.clone());
         placed
     }
@@ -412,9 +393,8 @@ impl<'a> Emission<'a> {
         if let Some((_, placed)) = known.filter(|(_, p)| p.form.degree >= least) {
             return placed.clone();
         }
-        let mut operands: Vec<(Placed, &BigRational)> = linear
-            .terms
-            .iter()
+        let terms = linear.terms.iter();
+        let mut operands: Vec<(Placed, &BigRational)> = terms
             .map(|(atom, factor)| (self.atom(*atom), factor))
             .collect();
         operands.sort_by_key(|(placed, _)| placed.form.degree);
@@ -438,10 +418,8 @@ impl<'a> Emission<'a> {
             constant,
             to,
         });
-        let placed = Placed {
-            form: to,
-            denominator,
-        };
+        let form = to;
+        let placed = Placed { form, denominator };
         self.combinations.push((linear.clone(), placed.clone()));
         placed
     }
@@ -459,9 +437,7 @@ fn parts(value: &BigRational) -> [f64; 2] {
 
 /// The nearest f64 of n / d, or one of its neighbours.
 pub(super) fn nearest(value: &BigRational) -> f64 {
-    use crate::math::exact::Exact;
-    let (numerator, denominator) = (value.numer().clone(), value.denom().clone());
-    Exact::integer(numerator)
-        .divided_by(&Exact::integer(denominator))
-        .to_f64()
+    let whole = |x: &BigInt| Exact::integer(x.clone());
+    let quotient = whole(value.numer()).divided_by(&whole(value.denom()));
+    quotient.to_f64()
 }

@@ -1,9 +1,10 @@
-//! What the shape of a tape tells of its zero set: products, powers, differences of squares.
+//! The zero set of a tape from the form of its outermost operations: products, powers, differences
+//! of squares.
 
+use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
-use super::rational::square_root;
 use super::tape::{Binary, Operation, Place, Tape, Unary};
 
 /// A field whose zeros are among those of a product.
@@ -14,7 +15,7 @@ pub struct Factor {
 }
 
 /// A field as ± a positive constant × its factors, each to its multiplicity.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Factors {
     pub negative: bool,
     /// The factors, each different; at least one unless the field is constant.
@@ -47,7 +48,7 @@ impl Tape {
         (tape, places)
     }
 
-    /// All operations of another tape; returns where its field stands.
+    /// Appends all operations of another tape; returns the place of its field.
     fn append(&mut self, other: &Tape) -> Place {
         let mut moved = Vec::with_capacity(other.operations().len());
         for place in 0..other.operations().len() {
@@ -73,17 +74,14 @@ impl Tape {
     /// where a constant b² must have a rational root. The zero set is that of the factors
     /// together, wherever all of them are defined.
     pub fn factors(&self) -> Factors {
-        let mut found = Factors {
-            negative: false,
-            factors: Vec::new(),
-        };
+        let mut found = Factors::default();
         let mut waiting = vec![(self.clone(), 1u32)];
         while let Some((tape, multiplicity)) = waiting.pop() {
             let room = waiting.len() + found.factors.len() < MOST_FACTORS;
             match tape.split().filter(|_| room) {
-                Some(split) => {
-                    found.negative ^= split.negative && multiplicity % 2 == 1;
-                    for (part, n) in split.parts.into_iter().rev() {
+                Some((negative, parts)) => {
+                    found.negative ^= negative && multiplicity % 2 == 1;
+                    for (part, n) in parts.into_iter().rev() {
                         waiting.push((part, multiplicity.saturating_mul(n)));
                     }
                 }
@@ -93,47 +91,31 @@ impl Tape {
         found
     }
 
-    fn split(&self) -> Option<Split> {
+    /// The outermost operation taken apart: whether the sign changes, and the parts with their
+    /// powers.
+    fn split(&self) -> Option<(bool, Vec<(Tape, u32)>)> {
         let operations = self.operations();
-        let part = |place: Place| self.rooted(place).0;
-        let positive = |parts| Split {
-            negative: false,
-            parts,
-        };
+        let part = |place: Place| (self.rooted(place).0, 1);
         match *operations.last()? {
-            Operation::Unary(Unary::Negative, a) => Some(Split {
-                negative: true,
-                parts: vec![(part(a), 1)],
-            }),
+            Operation::Unary(Unary::Negative, a) => Some((true, vec![part(a)])),
             Operation::WholePower(a, n) if n > 0 => {
-                Some(positive(vec![(part(a), n.unsigned_abs())]))
+                Some((false, vec![(part(a).0, n.unsigned_abs())]))
             }
             Operation::Binary(Binary::Product, a, b) => Some(match (self.at(a), self.at(b)) {
-                (Some(c), _) if !c.is_zero() => Split {
-                    negative: c.is_negative(),
-                    parts: vec![(part(b), 1)],
-                },
-                (_, Some(c)) if !c.is_zero() => Split {
-                    negative: c.is_negative(),
-                    parts: vec![(part(a), 1)],
-                },
-                _ => positive(vec![(part(a), 1), (part(b), 1)]),
+                (Some(c), _) if !c.is_zero() => (c.is_negative(), vec![part(b)]),
+                (_, Some(c)) if !c.is_zero() => (c.is_negative(), vec![part(a)]),
+                _ => (false, vec![part(a), part(b)]),
             }),
-            Operation::Binary(Binary::Difference, a, b) => match (self.root_of(a), self.root_of(b))
-            {
-                (Some(a), Some(b)) => Some(positive(a.minus_and_plus(&b))),
-                _ => None,
-            },
+            Operation::Binary(Binary::Difference, a, b) => {
+                Some((false, minus_and_plus(&self.root_of(a)?, &self.root_of(b)?)))
+            }
             Operation::Binary(Binary::Sum, a, b) => {
-                let constant = [(a, b), (b, a)]
-                    .into_iter()
-                    .find_map(|(c, other)| Some((self.at(c).filter(|c| c.is_negative())?, other)));
-                let (c, other) = constant?;
-                let root = Root::Constant(square_root(&-c)?);
-                match self.root_of(other)? {
-                    Root::Constant(_) => None,
-                    field => Some(positive(field.minus_and_plus(&root))),
-                }
+                let negative = |place: Place| self.at(place).filter(|c| c.is_negative());
+                let mut orders = [(a, b), (b, a)].into_iter();
+                let (c, other) = orders.find_map(|(c, other)| Some((negative(c)?, other)))?;
+                let root = constant(square_root(&-c)?);
+                let field = self.root_of(other).filter(|_| self.at(other).is_none())?;
+                Some((false, minus_and_plus(&field, &root)))
             }
             _ => None,
         }
@@ -147,7 +129,7 @@ impl Tape {
     }
 
     /// What the result at a place is the square of.
-    fn root_of(&self, place: Place) -> Option<Root> {
+    fn root_of(&self, place: Place) -> Option<Tape> {
         match self.operations()[place] {
             Operation::WholePower(a, n) if n > 0 && n % 2 == 0 => {
                 let (mut tape, _) = self.rooted(a);
@@ -155,48 +137,32 @@ impl Tape {
                     let last = tape.operations().len() - 1;
                     tape.push(Operation::WholePower(last, n / 2));
                 }
-                Some(Root::Field(tape))
+                Some(tape)
             }
             Operation::Constant(index) => {
                 let c = &self.constants()[index];
-                square_root(c)
-                    .filter(|_| c.is_positive())
-                    .map(Root::Constant)
+                square_root(c).filter(|_| c.is_positive()).map(constant)
             }
             _ => None,
         }
     }
 }
 
-struct Split {
-    negative: bool,
-    parts: Vec<(Tape, u32)>,
+fn constant(c: BigRational) -> Tape {
+    let mut tape = Tape::default();
+    tape.push_constant(c);
+    tape
 }
 
-enum Root {
-    Constant(BigRational),
-    Field(Tape),
-}
-
-impl Root {
-    fn minus_and_plus(&self, other: &Self) -> Vec<(Tape, u32)> {
-        [Binary::Difference, Binary::Sum]
-            .map(|function| {
-                let mut tape = Tape::default();
-                let a = self.put_on(&mut tape);
-                let b = other.put_on(&mut tape);
-                tape.push(Operation::Binary(function, a, b));
-                (tape, 1)
-            })
-            .into()
-    }
-
-    fn put_on(&self, tape: &mut Tape) -> Place {
-        match self {
-            Self::Constant(c) => tape.push_constant(c.clone()),
-            Self::Field(field) => tape.append(field),
-        }
-    }
+/// a − b and a + b.
+fn minus_and_plus(a: &Tape, b: &Tape) -> Vec<(Tape, u32)> {
+    let factors = [Binary::Difference, Binary::Sum].map(|function| {
+        let mut tape = Tape::default();
+        let (a, b) = (tape.append(a), tape.append(b));
+        tape.push(Operation::Binary(function, a, b));
+        (tape, 1)
+    });
+    factors.into()
 }
 
 impl Factors {
@@ -214,4 +180,17 @@ pub fn operands(operation: &Operation) -> [Option<Place>; 2] {
         Operation::Unary(_, a) | Operation::WholePower(a, _) => [Some(a), None],
         Operation::Binary(_, a, b) => [Some(a), Some(b)],
     }
+}
+
+/// √c where that is rational.
+pub fn square_root(c: &BigRational) -> Option<BigRational> {
+    if c.is_negative() {
+        return None;
+    }
+    let root = |n: &BigInt| {
+        let root = n.sqrt();
+        (&root * &root == *n).then_some(root)
+    };
+    // In lowest terms numerator and denominator are squares on their own.
+    Some(BigRational::new_raw(root(c.numer())?, root(c.denom())?))
 }

@@ -1,12 +1,12 @@
 //! A field f(x, y, z) as a list of operations, each on results of earlier ones.
 //!
-//! The tape is written once and evaluated in whatever arithmetic is asked for: numbers, lanes,
+//! The tape is written once and evaluated in any arithmetic: numbers, lanes,
 //! intervals, numbers with gradients, polynomials along a ray. Constants are kept as exact
 //! rationals, as written.
 
 use num_rational::BigRational;
 
-/// Where on the tape a result stands.
+/// The place of an operation and its result on the tape.
 pub type Place = usize;
 
 /// Functions of one value; angles are in radians, logarithms natural.

@@ -6,6 +6,7 @@
 
 use super::exact::Exact;
 use super::number::{Approximation, Bounded, INFLATION, Number, quotient_error};
+use super::words::{fast_two_sum, two_sum};
 
 /// An unevaluated sum hi + lo, |lo| ≤ ulp(hi)/2.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,28 +17,6 @@ pub struct Pair {
 
 /// A sum of two f64 with a bound of its distance to the truth.
 pub type DoubleDouble = Bounded<Pair>;
-
-/// a + b = s + e exactly (Knuth 1969), barring overflow.
-#[inline]
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
-    let s = a + b;
-    let b_part = s - a;
-    (s, (a - (s - b_part)) + (b - b_part))
-}
-
-/// a + b = s + e exactly where |a| ≥ |b| or a = 0 (Dekker 1971).
-#[inline]
-fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
-    let s = a + b;
-    (s, b - (s - a))
-}
-
-/// a · b = p + e exactly, barring overflow and underflow.
-#[inline]
-fn two_product(a: f64, b: f64) -> (f64, f64) {
-    let p = a * b;
-    (p, a.mul_add(b, -p))
-}
 
 impl DoubleDouble {
     /// The two numbers whose sum this is.
@@ -60,9 +39,10 @@ impl Approximation for Pair {
     /// |hi + lo| ≤ |hi| (1 + u): this covers that and the products of errors.
     const PRODUCT: f64 = INFLATION;
 
-    #[inline]
-    fn of(x: f64) -> Self {
-        Self { hi: x, lo: 0.0 }
+    methods! {
+        fn of(x: f64) -> Self = Self { hi: x, lo: 0.0 };
+        fn head(self) -> f64 = self.hi;
+        fn negated(self) -> Self = Self { hi: -self.hi, lo: -self.lo };
     }
 
     fn nearest(x: &Exact) -> (Self, bool) {
@@ -76,11 +56,6 @@ impl Approximation for Pair {
     }
 
     #[inline]
-    fn head(self) -> f64 {
-        self.hi
-    }
-
-    #[inline]
     fn plus(self, other: Self) -> Self {
         let (s_hi, s_lo) = two_sum(self.hi, other.hi);
         let (t_hi, t_lo) = two_sum(self.lo, other.lo);
@@ -91,18 +66,12 @@ impl Approximation for Pair {
 
     #[inline]
     fn times(self, other: Self) -> Self {
-        let (p, e) = two_product(self.hi, other.hi);
+        let p = self.hi * other.hi;
+        // hi · hi = p + e exactly, barring overflow and underflow.
+        let e = self.hi.mul_add(other.hi, -p);
         let cross = self.lo.mul_add(other.hi, self.hi * other.lo);
         let (hi, lo) = fast_two_sum(p, e + cross);
         Self { hi, lo }
-    }
-
-    #[inline]
-    fn negated(self) -> Self {
-        Self {
-            hi: -self.hi,
-            lo: -self.lo,
-        }
     }
 
     fn over(self, other: Self) -> (Self, f64) {

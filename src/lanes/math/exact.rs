@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use num_bigint::{BigInt, Sign};
+use num_traits::float::FloatCore;
 
 use super::number::Number;
 
@@ -58,24 +59,18 @@ impl Exact {
 }
 
 impl Number for Exact {
-    /// Zero stands in for a number that is not finite; callers refuse those before.
+    /// Zero for a number that is not finite, which callers exclude.
     fn scaled(x: f64, exponent: i32) -> Self {
         debug_assert!(x.is_finite());
-        let bits = x.to_bits();
-        let biased = ((bits >> 52) & 0x7ff) as i64;
-        let fraction = (bits & ((1 << 52) - 1)) as i64;
-        if biased == 0x7ff || (biased == 0 && fraction == 0) {
+        let (mantissa, power, sign) = x.integer_decode();
+        if mantissa == 0 || !x.is_finite() {
             return Self::integer(BigInt::ZERO);
         }
-        let mantissa = if biased == 0 {
-            fraction
-        } else {
-            fraction | (1 << 52)
-        };
         let trailing = mantissa.trailing_zeros();
-        let signed = if x < 0.0 { -mantissa } else { mantissa } >> trailing;
-        let exponent = biased.max(1) - 1075 + i64::from(trailing) + i64::from(exponent);
-        Self::new(signed.into(), exponent)
+        Self::new(
+            BigInt::from(mantissa >> trailing) * sign,
+            i64::from(power) + i64::from(trailing) + i64::from(exponent),
+        )
     }
 
     fn enclosing(x: &Exact) -> Self {
@@ -123,7 +118,6 @@ impl Number for Exact {
     /// Truncated to [`VALUE_BITS`]; 0 for negative numbers.
     fn square_root(&self) -> Self {
         let (radicand, exponent) = self.widened_to(2 * VALUE_BITS);
-        // Of what is negative, 0.
         Self::new(radicand.max(BigInt::ZERO).sqrt(), exponent / 2)
     }
 

@@ -90,7 +90,7 @@ pub fn sin_cos_turns<L: Lanes>(l: L, u: L::Real) -> (L::Real, L::Real) {
     in_quadrant(l, l.truncate(quarter + l.real(8.0)), near)
 }
 
-/// (sin, cos) of an angle from those of what it exceeds so many right angles by.
+/// (sin, cos) of an angle, from those of the angle that is `quadrant` right angles less.
 #[inline(always)]
 pub(super) fn in_quadrant<L: Lanes>(
     l: L,

@@ -54,20 +54,78 @@ impl Precision {
     }
 }
 
-/// An instruction set. The results are the same bits on each.
-#[derive(Debug, Clone, Copy)]
-pub enum Instructions {
+/// Makes the enum of instruction sets from one list, the best first. A row gives the architecture,
+/// the set's name in `fearless_simd`, the method of a level that tells whether the machine has it,
+/// its name for users, and the method of a job that runs on it.
+macro_rules! instruction_sets {
+    ($($(#[$doc:meta])* $arch:literal, $set:ident, $have:ident, $name:literal, $run:ident;)*) => {
+        /// An instruction set. The results are the same bits on each.
+        #[derive(Debug, Clone, Copy)]
+        pub enum Instructions {
+            $(
+                $(#[$doc])*
+                #[cfg(target_arch = $arch)]
+                $set(fearless_simd::$set),
+            )*
+            /// The instructions that every machine of the architecture has, one lane after the other.
+            Scalar,
+        }
+
+        impl Instructions {
+            /// The names of all that machines of this kind may have, the best first.
+            pub const NAMES: &'static [&'static str] = &[
+                $(#[cfg(target_arch = $arch)] $name,)*
+                Self::LEAST,
+            ];
+
+            /// All that this machine has, the best first.
+            pub fn all() -> Vec<Self> {
+                let mut all = Vec::new();
+                $(
+                    #[cfg(target_arch = $arch)]
+                    all.extend(Level::new().$have().map(Self::$set));
+                )*
+                all.push(Self::Scalar);
+                all
+            }
+
+            /// The best of those that a level of `fearless_simd` has.
+            #[inline(always)]
+            pub(super) fn of(level: Level) -> Self {
+                match level {
+                    $(#[cfg(target_arch = $arch)] Level::$set(simd) => Self::$set(simd),)*
+                    _ => Self::Scalar,
+                }
+            }
+
+            /// One of [`NAMES`](Self::NAMES).
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(#[cfg(target_arch = $arch)] Self::$set(_) => $name,)*
+                    Self::Scalar => Self::LEAST,
+                }
+            }
+
+            pub fn run<T: Scalar, J: Job<T>>(self, job: J) -> J::Output {
+                match self {
+                    $(
+                        #[cfg(target_arch = $arch)]
+                        Self::$set(simd) => on(T::packet(simd), inlined!(|lanes| job.$run(lanes))),
+                    )*
+                    Self::Scalar => on(T::ONE, inlined!(|lanes| job.run(lanes))),
+                }
+            }
+        }
+    };
+}
+
+instruction_sets! {
     /// x86-64 with AVX-512 (Ice Lake and later).
-    #[cfg(target_arch = "x86_64")]
-    Avx512(fearless_simd::Avx512),
+    "x86_64", Avx512, as_avx512, "avx512", run_amid_registers;
     /// x86-64 with AVX2 and FMA.
-    #[cfg(target_arch = "x86_64")]
-    Avx2(fearless_simd::Avx2),
+    "x86_64", Avx2, as_avx2, "avx2", run;
     /// Arm with Neon.
-    #[cfg(target_arch = "aarch64")]
-    Neon(fearless_simd::Neon),
-    /// What every machine of its kind has, for one lane after the other.
-    Scalar,
+    "aarch64", Neon, as_neon, "neon", run;
 }
 
 impl Instructions {
@@ -78,93 +136,13 @@ impl Instructions {
         "scalar"
     };
 
-    /// The names of all that machines of this kind may have, the best first.
-    pub const NAMES: &'static [&'static str] = &[
-        #[cfg(target_arch = "x86_64")]
-        "avx512",
-        #[cfg(target_arch = "x86_64")]
-        "avx2",
-        #[cfg(target_arch = "aarch64")]
-        "neon",
-        Self::LEAST,
-    ];
-
-    /// All that this machine has, the best first.
-    pub fn all() -> Vec<Self> {
-        let mut all = Vec::new();
-        #[cfg(target_arch = "x86_64")]
-        {
-            all.extend(Level::new().as_avx512().map(Self::Avx512));
-            all.extend(Level::new().as_avx2().map(Self::Avx2));
-        }
-        #[cfg(target_arch = "aarch64")]
-        all.extend(Level::new().as_neon().map(Self::Neon));
-        all.push(Self::Scalar);
-        all
-    }
-
     pub fn best() -> Self {
         Self::of(Level::new())
-    }
-
-    /// The best of those that a level of `fearless_simd` has.
-    #[inline(always)]
-    pub(super) fn of(level: Level) -> Self {
-        match level {
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx512(simd) => Self::Avx512(simd),
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2(simd) => Self::Avx2(simd),
-            #[cfg(target_arch = "aarch64")]
-            Level::Neon(simd) => Self::Neon(simd),
-            _ => Self::Scalar,
-        }
     }
 
     /// The one of this name, if this machine has it.
     pub fn named(name: &str) -> Option<Self> {
         Self::all().into_iter().find(|own| own.name() == name)
-    }
-
-    /// One of [`NAMES`](Self::NAMES).
-    pub fn name(self) -> &'static str {
-        match self {
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512(_) => "avx512",
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2(_) => "avx2",
-            #[cfg(target_arch = "aarch64")]
-            Self::Neon(_) => "neon",
-            Self::Scalar => Self::LEAST,
-        }
-    }
-
-    pub fn run<T: Scalar, J: Job<T>>(self, job: J) -> J::Output {
-        macro_rules! on {
-            ($lanes:expr, $run:ident) => {
-                on($lanes, inlined!(|lanes| job.$run(lanes)))
-            };
-        }
-        match self {
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512(simd) => on!(T::packet(simd), run_amid_registers),
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2(simd) => on!(T::packet(simd), run),
-            #[cfg(target_arch = "aarch64")]
-            Self::Neon(simd) => on!(T::packet(simd), run),
-            Self::Scalar => on!(T::ONE, run),
-        }
-    }
-
-    /// Does a job that can be done in either precision.
-    pub fn run_in<J, O>(self, precision: Precision, job: J) -> O
-    where
-        J: Job<f32, Output = O> + Job<f64, Output = O>,
-    {
-        match precision {
-            Precision::Single => self.run::<f32, J>(job),
-            Precision::Double => self.run::<f64, J>(job),
-        }
     }
 }
 

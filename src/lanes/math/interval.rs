@@ -119,7 +119,7 @@ impl<L: DoubleLanes> Interval<L> {
         self.low.same(zero) & self.high.same(zero)
     }
 
-    /// √x of what is not negative in x.
+    /// √x of the part of x that is not negative.
     #[inline(always)]
     pub fn square_root(self) -> Self {
         let l = self.lanes;
@@ -197,8 +197,8 @@ impl<L: DoubleLanes> Interval<L> {
         power
     }
 
-    /// The smallest interval around four numbers and what rounding may have taken from them; the
-    /// whole line where one of them is NaN or infinite.
+    /// The smallest interval around four numbers, widened by a relative rounding error; the whole line
+    /// where one of them is NaN or infinite.
     #[inline(always)]
     pub(super) fn around(l: L, [a, b, c, d]: [L::Real; 4], relative: f64) -> Self {
         // 0 for finite numbers, NaN otherwise; minimum and maximum alone could lose a NaN.
@@ -285,7 +285,7 @@ pub struct Domain<L: DoubleLanes> {
     next: usize,
 }
 
-/// Jumps whose sides are looked at apart: 2³ combinations fill eight lanes.
+/// Jumps whose two sides are evaluated separately: 2³ combinations fill eight lanes.
 const SIDES: usize = 3;
 
 impl<L: DoubleLanes> Domain<L> {

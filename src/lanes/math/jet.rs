@@ -18,6 +18,8 @@ impl<L: DoubleLanes> Jet<L> {
     methods! {
         pub fn new(value: Interval<L>, slope: Interval<L>) -> Self = Self { value, slope };
         pub fn negated(self) -> Self = Self::new(-self.value, -self.slope);
+        pub fn larger(self, other: Self) -> Self =
+            self.negated().smaller(other.negated()).negated();
         pub fn plus(self, other: Self) -> Self =
             Self::new(self.value + other.value, self.slope + other.slope);
         pub fn minus(self, other: Self) -> Self =
@@ -71,29 +73,5 @@ impl<L: DoubleLanes> Jet<L> {
         let slope = self.slope.or_where_not(x.high.lt(y.low), both);
         let slope = other.slope.or_where_not(y.high.lt(x.low), slope);
         Self::new(x.smaller(y), slope)
-    }
-
-    #[inline(always)]
-    pub fn larger(self, other: Self) -> Self {
-        self.negated().smaller(other.negated()).negated()
-    }
-
-    /// Slope of the angle of the point (other, self): (x y′ − y x′)/(x² + y²).
-    #[inline(always)]
-    pub fn slope_of_angle(self, other: Self) -> Interval<L> {
-        let turn = other.value * self.slope - self.value * other.slope;
-        turn / (other.value.squared() + self.value.squared())
-    }
-
-    /// Slope of aᵇ from its value and ln a: aᵇ (b′ ln a + b a′/a).
-    #[inline(always)]
-    pub fn slope_of_power(
-        self,
-        exponent: Self,
-        power: Interval<L>,
-        logarithm: Interval<L>,
-    ) -> Interval<L> {
-        let rate = exponent.slope * logarithm + exponent.value * self.slope / self.value;
-        power * rate
     }
 }

@@ -143,7 +143,7 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     type Scalar: Scalar;
     type Real: Real<Mask = Self::Mask>;
     type Int: Int<Mask = Self::Mask>;
-    /// As many lanes as one packet has, where these are several packets.
+    /// The lanes of one packet, where these are two packets.
     type Narrow: Lanes<Scalar = Self::Scalar>;
     type Mask: Mask;
     const COUNT: usize;
@@ -202,14 +202,15 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     }
 }
 
-/// Gives a closure back: for the macro of the same name.
+/// Returns its argument, so that a closure with an attribute may stand on the right of `let`: see the
+/// macro `inlined!`.
 #[inline(always)]
 pub fn inlined<F>(f: F) -> F {
     f
 }
 
-/// The same of a closure that is called once. Without the bound it would be taken for one that can be
-/// called again, and be called by way of an adapter that is not inlined.
+/// The same for a closure that is called once. Without the bound the compiler would take it for one that
+/// can be called again, and call it through an adapter that is not inlined.
 #[inline(always)]
 pub fn inlined_once<R, F: FnOnce() -> R>(f: F) -> F {
     f

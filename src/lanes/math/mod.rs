@@ -1,4 +1,4 @@
-//! Numbers: transforms, extended precision, lanes. Knows nobody else.
+//! Numbers: lanes, intervals, extended precision, transforms. Uses no other room.
 
 pub mod affine;
 pub mod double_double;
@@ -7,7 +7,6 @@ pub mod functions;
 pub mod instructions;
 pub mod interval;
 pub mod interval_functions;
-pub mod interval_sides;
 pub mod jet;
 pub mod lanes;
 pub mod lookup;

@@ -22,11 +22,11 @@ pub trait Number: Clone {
     /// self / other. For values, never for decisions: on the exact rung it is truncated to
     /// [`exact::VALUE_BITS`](super::exact::VALUE_BITS).
     fn divided_by(&self, other: &Self) -> Self;
-    /// √self, of a number known to be ≥ 0. For values, never for decisions.
+    /// √self, of a number that is ≥ 0. For values, never for decisions.
     fn square_root(&self) -> Self;
     /// The nearest f64, or one of its neighbours.
     fn to_f64(&self) -> f64;
-    /// Bound of |value − truth|; infinite or NaN where nothing is known.
+    /// Bound of |value − truth|; infinite or NaN where there is none.
     fn error(&self) -> f64;
 
     fn of(x: f64) -> Self {
@@ -68,10 +68,8 @@ pub fn binary_exponent(x: f64) -> i32 {
     (((x.to_bits() >> 52) & 0x7ff) as i32 - 1023).clamp(-1000, 1000)
 }
 
-/// One or several f64 whose sum stands for a real number. Operations are rounded as the constants
-/// tell.
+/// One or several f64 whose sum approximates a real number, with bounds of its rounding errors.
 pub trait Approximation: Copy + PartialEq {
-    /// Zero.
     const ZERO: Self;
     /// Bound of the relative error of sums and products, with room for the subnormal rounding of
     /// the bound itself.
@@ -81,7 +79,7 @@ pub trait Approximation: Copy + PartialEq {
     const SMALL: f64;
     /// No number is smaller than this part of its head.
     const LEAST: f64;
-    /// What the errors of factors are multiplied by, because the heads stand for the factors.
+    /// Factor on the error that a product inherits, which is computed from heads alone.
     const PRODUCT: f64;
     fn of(x: f64) -> Self;
     /// The nearest to a number, and whether it is the number itself.
@@ -158,6 +156,12 @@ impl<A: Approximation> Bounded<A> {
 }
 
 impl<A: Approximation> Number for Bounded<A> {
+    methods! {
+        fn negated(&self) -> Self = Self { value: self.value.negated(), ..*self };
+        fn to_f64(&self) -> f64 = self.value.head();
+        fn error(&self) -> f64 = self.error;
+    }
+
     #[inline]
     fn scaled(x: f64, exponent: i32) -> Self {
         let value = x * power_of_two(exponent);
@@ -198,14 +202,6 @@ impl<A: Approximation> Number for Bounded<A> {
     }
 
     #[inline]
-    fn negated(&self) -> Self {
-        Self {
-            value: self.value.negated(),
-            ..*self
-        }
-    }
-
-    #[inline]
     fn sign(&self) -> Option<Ordering> {
         let least = A::LEAST * self.value.head();
         // A NaN in either number fails every comparison and so stays undecided.
@@ -240,16 +236,6 @@ impl<A: Approximation> Number for Bounded<A> {
                 error: inherited,
             },
         }
-    }
-
-    #[inline]
-    fn to_f64(&self) -> f64 {
-        self.value.head()
-    }
-
-    #[inline]
-    fn error(&self) -> f64 {
-        self.error
     }
 }
 

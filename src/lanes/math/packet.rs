@@ -1,4 +1,4 @@
-//! Packets as arrays, for what is done one lane after the other.
+//! Packets as arrays, for work on one lane after the other.
 
 use super::lanes::{Lanes, WIDEST};
 

@@ -1,4 +1,4 @@
-//! Rays of f64, as single questions ask them.
+//! Single rays in f64.
 
 use glam::DVec3;
 

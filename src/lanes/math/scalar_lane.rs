@@ -1,5 +1,5 @@
-//! One lane as lanes: what is written over [`Lanes`] runs for a single number too, with the bits
-//! that each lane of a packet would have, in instructions that every machine has.
+//! A single number as lanes: code over [`Lanes`] gives it the same bits as a lane of a packet, in
+//! instructions that every machine has.
 
 use super::instructions::Instructions;
 use super::lanes::{Int, Lanes, Mask, Real};
@@ -33,8 +33,10 @@ impl Int for u32 {
     }
 }
 
+/// Lanes of one scalar: their name, the scalar, the bits of a uniform variate, and the conversions
+/// that differ between the precisions.
 macro_rules! one {
-    ($one:ident, $scalar:ident, uniform: $uniform:literal) => {
+    ($one:ident, $scalar:ident, uniform: $uniform:literal; $($conversions:tt)*) => {
         impl Real for $scalar {
             type Mask = bool;
             methods! {
@@ -62,9 +64,11 @@ macro_rules! one {
             type Mask = bool;
             const COUNT: usize = 1;
             const UNIFORM_BITS: u32 = $uniform;
+            methods! { $($conversions)* }
             methods! {
                 fn instructions(self) -> Instructions = Instructions::Scalar;
                 fn narrow(self) -> Self = self;
+                fn vectorize<R>(self, f: impl FnOnce() -> R) -> R = f();
                 fn real(self, x: f64) -> $scalar = x as $scalar;
                 fn splat(self, x: $scalar) -> $scalar = x;
                 fn int(self, x: u32) -> u32 = x;
@@ -82,15 +86,8 @@ macro_rules! one {
                 fn with_int_lane(self, _: u32, _: usize, value: u32) -> u32 = value;
                 fn select(self, m: bool, a: $scalar, b: $scalar) -> $scalar = if m { a } else { b };
                 fn select_int(self, m: bool, a: u32, b: u32) -> u32 = if m { a } else { b };
-                fn truncate(self, x: $scalar) -> u32 = $scalar::truncated(x);
-                fn to_real(self, x: u32) -> $scalar = $scalar::of_word(x);
-                fn power_of_two(self, e: $scalar) -> $scalar = $scalar::power_of_two(e);
                 fn compress_into(self, x: $scalar, _: bool, to: &mut [$scalar]) -> () = to[0] = x;
                 fn compress_int_into(self, x: u32, _: bool, to: &mut [u32]) -> () = to[0] = x;
-            }
-            #[inline(always)]
-            fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
-                f()
             }
             #[inline(always)]
             fn split_exponent(self, x: $scalar) -> ($scalar, $scalar) {
@@ -106,32 +103,19 @@ macro_rules! one {
     };
 }
 
-/// Conversions that differ between the precisions. Arguments outside the ranges that [`Lanes`] states
-/// give the same bits in f64 as in a packet.
-trait Converted {
-    fn truncated(self) -> u32;
-    fn of_word(x: u32) -> Self;
-    fn power_of_two(e: Self) -> Self;
-}
-
-impl Converted for f32 {
-    methods! {
-        fn truncated(self) -> u32 = self as i32 as u32;
-        fn of_word(x: u32) -> f32 = x as i32 as f32;
-        fn power_of_two(e: f32) -> f32 = f32::from_bits((e + 127.0).truncated() << 23);
-    }
-}
-
 /// 2⁵²: added to a smaller number, it puts its integer part into the low bits of the significand.
 pub(super) const SHIFT: f64 = 4_503_599_627_370_496.0;
 
-impl Converted for f64 {
-    methods! {
-        fn truncated(self) -> u32 = (self.floor() + SHIFT).to_bits() as u32;
-        fn of_word(x: u32) -> f64 = x.into();
-        fn power_of_two(e: f64) -> f64 = f64::from_bits((e + (SHIFT + 1023.0)).to_bits() << 52);
-    }
+// Arguments outside the ranges that `Lanes` states give the same bits in f64 as in a packet.
+one! {
+    OneSingle, f32, uniform: 24;
+    fn truncate(self, x: f32) -> u32 = x as i32 as u32;
+    fn to_real(self, x: u32) -> f32 = x as i32 as f32;
+    fn power_of_two(self, e: f32) -> f32 = f32::from_bits(self.truncate(e + 127.0) << 23);
 }
-
-one!(OneSingle, f32, uniform: 24);
-one!(One, f64, uniform: 32);
+one! {
+    One, f64, uniform: 32;
+    fn truncate(self, x: f64) -> u32 = (x.floor() + SHIFT).to_bits() as u32;
+    fn to_real(self, x: u32) -> f64 = x.into();
+    fn power_of_two(self, e: f64) -> f64 = f64::from_bits((e + (SHIFT + 1023.0)).to_bits() << 52);
+}

@@ -131,7 +131,7 @@ macro_rules! each {
     };
 }
 
-/// What is done alike to reals and to integers.
+/// Methods that reals and integers have under different names.
 macro_rules! values {
     (
         $value:ident of $scalar:ty:
@@ -187,10 +187,7 @@ impl<L: Lanes> Lanes for Twice<L> {
     methods! {
         fn instructions(self) -> Instructions = self.0.instructions();
         fn narrow(self) -> L::Narrow = self.0.narrow();
-    }
-    #[inline(always)]
-    fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
-        self.0.vectorize(f)
+        fn vectorize<R>(self, f: impl FnOnce() -> R) -> R = self.0.vectorize(f);
     }
     alike! {
         fn real(x: f64) -> Real;

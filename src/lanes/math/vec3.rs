@@ -14,11 +14,6 @@ pub struct Vec3<R> {
 }
 
 impl<R: Real> Vec3<R> {
-    #[inline(always)]
-    pub fn new(x: R, y: R, z: R) -> Self {
-        Self { x, y, z }
-    }
-
     /// The same vector, rounded, in every lane.
     #[inline(always)]
     pub fn splat<L: Lanes<Real = R>>(l: L, v: DVec3) -> Self {
@@ -26,6 +21,7 @@ impl<R: Real> Vec3<R> {
     }
 
     methods! {
+        pub fn new(x: R, y: R, z: R) -> Self = Self { x, y, z };
         pub fn dot(self, b: Self) -> R = self.x.mul_add(b.x, self.y.mul_add(b.y, self.z * b.z));
         pub fn length_squared(self) -> R = self.dot(self);
         pub fn scale(self, s: R) -> Self = Self::new(self.x * s, self.y * s, self.z * s);
@@ -126,8 +122,8 @@ pub struct Rows<T> {
 /// Marks a row that depends on more than one coordinate.
 const SEVERAL: u8 = 3;
 
-/// The only coordinate that a row depends on: most things stand square to the axes, and what is
-/// multiplied by zero need not be computed.
+/// The only coordinate that a row depends on: most objects are aligned with the axes, and products with
+/// zero need not be computed.
 fn only(row: &[f64; 4]) -> u8 {
     match row {
         [_, 0.0, 0.0, _] => 0,
@@ -181,12 +177,9 @@ impl<T: super::lanes::Scalar> Rows<T> {
 
     #[inline(always)]
     pub fn row_point<L: Lanes<Scalar = T>>(&self, l: L, i: usize, p: Vec3<L::Real>) -> L::Real {
-        let r = &self.rows[i];
-        l.splat(r[0]).mul_add(
-            p.x,
-            l.splat(r[1])
-                .mul_add(p.y, l.splat(r[2]).mul_add(p.z, l.splat(r[3]))),
-        )
+        let (row, constant) = (self.splat(l, [(i, 0), (i, 1), (i, 2)]), self.rows[i][3]);
+        let sum = row.y.mul_add(p.y, row.z.mul_add(p.z, l.splat(constant)));
+        row.x.mul_add(p.x, sum)
     }
 
     #[inline(always)]

@@ -71,24 +71,31 @@ impl<L: Lanes<Scalar = f64>> Pair<L> {
     /// The exact sum of two numbers, as a normalised pair.
     #[inline(always)]
     pub fn normalised(high: L::Real, low: L::Real) -> Self {
-        let (high, low) = two_sum::<L>(high, low);
+        let (high, low) = two_sum(high, low);
         Self::new(high, low)
     }
 
-    /// The same where |e| ≤ 3u |p|, which makes the fast sum exact (Dekker 1971).
+    /// The same where |e| ≤ 3u |p|, for which the fast sum is exact.
     #[inline(always)]
     fn fast_normalised(p: L::Real, e: L::Real) -> Self {
-        let high = p + e;
-        Self::new(high, e - (high - p))
+        let (high, low) = fast_two_sum(p, e);
+        Self::new(high, low)
     }
 }
 
-/// a + b = s + e exactly (Knuth 1969).
+/// a + b = s + e exactly (Knuth 1969), barring overflow.
 #[inline(always)]
-fn two_sum<L: Lanes>(a: L::Real, b: L::Real) -> (L::Real, L::Real) {
+pub(super) fn two_sum<R: Real>(a: R, b: R) -> (R, R) {
     let s = a + b;
     let part = s - a;
     (s, (a - (s - part)) + (b - part))
+}
+
+/// a + b = s + e exactly where |a| ≥ |b| or a = 0 (Dekker 1971).
+#[inline(always)]
+pub(super) fn fast_two_sum<R: Real>(a: R, b: R) -> (R, R) {
+    let s = a + b;
+    (s, b - (s - a))
 }
 
 impl<L: Lanes<Scalar = f64>> Word<L> for Pair<L> {
@@ -97,13 +104,15 @@ impl<L: Lanes<Scalar = f64>> Word<L> for Pair<L> {
     methods! {
         fn real(l: L, x: L::Real) -> Self = Self::new(x, l.real(0.0));
         fn constant(l: L, [high, low]: [f64; 2]) -> Self = Self::new(l.real(high), l.real(low));
+        fn load(l: L, rows: &[Row], i: usize) -> Self =
+            Self::new(l.load(&rows[2 * i].0), l.load(&rows[2 * i + 1].0));
         fn minus(self, other: Self) -> Self = self.plus(Self::new(-other.high, -other.low));
         fn fused(self, a: Self, b: Self) -> Self = self.times(a).plus(b);
         fn head(self) -> L::Real = self.high;
     }
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
-        let (s, e) = two_sum::<L>(self.high, other.high);
+        let (s, e) = two_sum(self.high, other.high);
         Self::normalised(s, e + (self.low + other.low))
     }
     #[inline(always)]
@@ -122,10 +131,6 @@ impl<L: Lanes<Scalar = f64>> Word<L> for Pair<L> {
     fn select(l: L, mask: L::Mask, a: Self, b: Self) -> Self {
         let low = l.select(mask, a.low, b.low);
         Self::new(l.select(mask, a.high, b.high), low)
-    }
-    #[inline(always)]
-    fn load(l: L, rows: &[Row], i: usize) -> Self {
-        Self::new(l.load(&rows[2 * i].0), l.load(&rows[2 * i + 1].0))
     }
     #[inline(always)]
     fn store(self, l: L, rows: &mut [Row], i: usize) {

@@ -6,7 +6,7 @@
 //! one simple root, anything else is split (de Casteljau) where the control polygon has its first
 //! minimum below zero, and the first part looked at first. A root is refined by Newton's method within a
 //! bracket (the safeguarded solver of Yuksel 2022 is the model) and then enclosed by certain signs
-//! on both sides. What the bound or the number of splits does not allow is *undecided*.
+//! on both sides. What the bound or the number of splits does not decide is *undecided*.
 
 use crate::math::lanes::{Lanes, Mask, Real};
 use crate::math::words::Word;
@@ -26,7 +26,7 @@ const MOST_SPLITS: usize = 32;
 /// Steps of Newton's method, which doubles the digits in each, or halvings where it does not.
 const MOST_STEPS: usize = 24;
 
-/// What is known of polynomials besides their coefficients.
+/// The polynomials apart from their coefficients.
 pub struct Question<L: Lanes> {
     /// Bound of the coefficients' error.
     pub error: L::Real,
@@ -37,12 +37,13 @@ pub struct Question<L: Lanes> {
     pub start_error: L::Real,
     /// How many times 1 is known to be a root, in all lanes: that many last coefficients are zero.
     pub roots_at_end: usize,
-    /// Part of the solver's own rounding that is accounted for: 1.
+    /// Factor on the bound of the solver's own rounding: 1, or 0 for tests to see that the bound is
+    /// needed.
     pub accounted: f64,
     pub active: L::Mask,
 }
 
-/// What is known of the first roots.
+/// The first roots, as far as they were decided.
 #[derive(Clone, Copy)]
 pub struct Roots<L: Lanes> {
     pub found: L::Mask,
@@ -79,7 +80,7 @@ pub const fn split_error(degree: usize, unit: f64) -> f64 {
     8.0 * degree as f64 * unit
 }
 
-/// Reads the signs. In the lanes of `known` the first coefficient may have any.
+/// The signs of coefficients. In the lanes of `known` the first one may have any sign.
 #[inline(always)]
 fn signs<L: Lanes<Scalar = f64>, W: Word<L>>(
     l: L,
@@ -128,7 +129,7 @@ fn minimum<L: Lanes<Scalar = f64>, W: Word<L>>(l: L, c: &[W], error: L::Real) ->
     at.max(l.real(1.0 / 64.0)).min(l.real(63.0 / 64.0))
 }
 
-/// Splits `after` at a point: what comes first goes into `before`.
+/// Splits `after` at a point: the first part goes into `before`.
 #[inline(always)]
 #[expect(
     clippy::needless_range_loop,
@@ -391,6 +392,8 @@ fn enclosed<L: Lanes<Scalar = f64>, W: Word<L>>(
     let mut width = (error / steepness).mul_add(l.real(1.5), l.real(2.0 * f64::EPSILON));
     let (mut low, mut high) = (zero, one);
     let mut open = active;
+    // Twelve widths reach 8¹¹ = 2³³ times the first; a side without a certain sign by then keeps the
+    // end of [0, 1].
     for _ in 0..12 {
         let (a, b) = ((x - width).max(zero), (x + width).min(one));
         let before = value(l, scaled, a).gt(error);

@@ -1,7 +1,7 @@
 //! The first root of a polynomial with integer coefficients, decided exactly.
 //!
 //! Sturm's theorem counts the distinct roots of the square-free part in an interval; the first one
-//! is isolated by bisection at f64 points and enclosed by exact signs.
+//! is isolated by bisection at f64 points and enclosed by exact signs, beyond f64 where asked.
 
 use std::cmp::Ordering;
 
@@ -28,16 +28,14 @@ impl Point {
     pub fn dyadic(x: &Exact) -> Self {
         let (mantissa, exponent) = x.parts();
         let shift = exponent.unsigned_abs();
-        if exponent >= 0 {
-            Self {
-                numerator: mantissa << shift,
-                denominator: BigInt::one(),
-            }
+        let (up, down) = if exponent >= 0 {
+            (shift, 0)
         } else {
-            Self {
-                numerator: mantissa.clone(),
-                denominator: BigInt::one() << shift,
-            }
+            (0, shift)
+        };
+        Self {
+            numerator: mantissa << up,
+            denominator: BigInt::one() << down,
         }
     }
 
@@ -54,24 +52,25 @@ impl Point {
 
     /// The nearest f64 not above, for points within the range of f64.
     fn floor(&self) -> f64 {
-        let mut x = self.near().clamp(-f64::MAX, f64::MAX);
-        while Self::of(x).compare(self) == Ordering::Greater && x > -f64::MAX {
-            x = x.next_down();
-        }
-        x
+        self.moved(Ordering::Greater, f64::next_down)
     }
 
     /// The nearest f64 not below, for points within the range of f64.
     fn ceil(&self) -> f64 {
+        self.moved(Ordering::Less, f64::next_up)
+    }
+
+    /// A near f64, moved while it compares like this with the point and a finite one follows.
+    fn moved(&self, wrong: Ordering, next: impl Fn(f64) -> f64) -> f64 {
         let mut x = self.near().clamp(-f64::MAX, f64::MAX);
-        while Self::of(x).compare(self) == Ordering::Less && x < f64::MAX {
-            x = x.next_up();
+        while Self::of(x).compare(self) == wrong && next(x).is_finite() {
+            x = next(x);
         }
         x
     }
 }
 
-/// Where roots count: between the ends, and at those ends that count.
+/// Where roots are looked for: between the ends, and at those ends that count.
 #[derive(Debug, Clone)]
 pub struct Stretch {
     pub low: Point,
@@ -92,26 +91,22 @@ pub struct ExactRoot {
 
 /// A polynomial, lowest power first, without leading zeros.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Polynomial(Vec<BigInt>);
+struct Polynomial(Vec<BigInt>);
 
 impl Polynomial {
-    pub(super) fn new(mut coefficients: Vec<BigInt>) -> Self {
+    fn new(mut coefficients: Vec<BigInt>) -> Self {
         while coefficients.last().is_some_and(Zero::is_zero) {
             coefficients.pop();
         }
         Self(coefficients)
     }
 
-    fn is_zero(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    pub(super) fn degree(&self) -> usize {
+    fn degree(&self) -> usize {
         self.0.len().saturating_sub(1)
     }
 
     /// Without the powers of two that its coefficients have in common.
-    pub(super) fn without_twos(mut self) -> Self {
+    fn without_twos(mut self) -> Self {
         let twos = self.0.iter().filter_map(BigInt::trailing_zeros).min();
         for c in &mut self.0 {
             *c >>= twos.unwrap_or(0);
@@ -150,7 +145,7 @@ impl Polynomial {
         sum
     }
 
-    pub(super) fn sign_at(&self, point: &Point) -> Sign {
+    fn sign_at(&self, point: &Point) -> Sign {
         self.at(point).sign()
     }
 
@@ -202,17 +197,16 @@ impl Polynomial {
     }
 }
 
-pub(super) struct Chain(Vec<Polynomial>);
+struct Chain(Vec<Polynomial>);
 
 impl Chain {
-    /// Remainders with changed signs, divided by what subresultants have in common (Collins 1967,
-    /// Brown and Traub 1971), which is known beforehand: their coefficients grow as slowly as they
-    /// can.
+    /// Remainders with changed signs, divided by the common factor of subresultants, which is known
+    /// beforehand (Collins 1967, Brown and Traub 1971): coefficients grow as slowly as they can.
     fn new(polynomial: &Polynomial) -> Self {
         let mut chain = vec![polynomial.clone(), polynomial.derivative()];
         let (mut g, mut h) = (BigInt::one(), BigInt::one());
         while let [.., a, b] = chain.as_slice() {
-            if b.is_zero() {
+            if b.0.is_empty() {
                 chain.pop();
                 break;
             }
@@ -238,51 +232,41 @@ impl Chain {
     }
 
     fn changes(&self, point: &Point) -> usize {
-        let mut changes = 0;
-        let mut before = Sign::NoSign;
-        for polynomial in &self.0 {
-            let sign = polynomial.sign_at(point);
-            if sign != Sign::NoSign {
-                changes += usize::from(before != Sign::NoSign && before != sign);
-                before = sign;
-            }
-        }
-        changes
+        let signs = self.0.iter().map(|polynomial| polynomial.sign_at(point));
+        let mut signs: Vec<Sign> = signs.filter(|sign| *sign != Sign::NoSign).collect();
+        signs.dedup();
+        signs.len().saturating_sub(1)
     }
 
     /// Distinct roots in (low, high]; for a square-free polynomial.
-    pub(super) fn count(&self, low: &Point, high: &Point) -> usize {
+    fn count(&self, low: &Point, high: &Point) -> usize {
         self.changes(low).saturating_sub(self.changes(high))
     }
 }
 
 /// A polynomial whose roots are all simple, and what was divided out.
-pub(super) struct SquareFree {
-    pub simple: Polynomial,
-    pub chain: Chain,
+struct SquareFree {
+    simple: Polynomial,
+    chain: Chain,
     /// The divisor: every root of the original as often as it was one, less one.
-    pub common: Polynomial,
+    common: Polynomial,
 }
 
 impl SquareFree {
     /// The square-free part of a polynomial; `None` where it is a constant.
-    pub fn of(coefficients: &[BigInt]) -> Option<Self> {
+    fn of(coefficients: &[BigInt]) -> Option<Self> {
         let whole = Polynomial::new(coefficients.to_vec()).without_twos();
         if whole.degree() == 0 {
             return None;
         }
-        let chain = Chain::new(&whole);
-        let common = chain.last().clone();
-        if common.degree() == 0 {
-            return Some(Self {
-                simple: whole,
-                chain,
-                common,
-            });
+        let mut chain = Chain::new(&whole);
+        let mut common = chain.last().clone();
+        let mut simple = whole;
+        if common.degree() > 0 {
+            common = common.primitive();
+            simple = simple.quotient(&common);
+            chain = Chain::new(&simple);
         }
-        let common = common.primitive();
-        let simple = whole.quotient(&common);
-        let chain = Chain::new(&simple);
         Some(Self {
             simple,
             chain,
@@ -291,7 +275,7 @@ impl SquareFree {
     }
 }
 
-/// The first root on the stretch; it is looked for near the hint first. The zero polynomial has none that could be told from the others.
+/// The first root on the stretch, sought near the hint first; `None` for a constant, zero among them.
 pub fn first_root(
     coefficients: &[BigInt],
     stretch: &Stretch,
@@ -441,9 +425,9 @@ fn narrowed(
             break;
         };
         let value = Value::new(simple, &point);
-        match value.sign() {
+        match value.sign {
             Sign::NoSign => return (point.clone(), point),
-            sign if sign == at_high.sign() => {
+            sign if sign == at_high.sign => {
                 (high, b) = (point, x);
                 ends[1] = value;
             }
@@ -477,10 +461,6 @@ impl Value {
         }
     }
 
-    fn sign(&self) -> Sign {
-        self.sign
-    }
-
     /// |a| / (|a| + |b|), roughly.
     fn share(a: &Self, b: &Self) -> f64 {
         let exponent = (b.exponent - a.exponent).clamp(-1000, 1000) as i32;
@@ -493,4 +473,39 @@ fn leading(x: &BigInt) -> (f64, i64) {
     let bits = x.bits() as i64;
     let scaled = Exact::integer(x.abs()).shifted(-bits);
     (scaled.to_f64(), bits)
+}
+
+/// The first root in [low, high], within 2⁻ᵇ of the interval's width; twice the same where it is met
+/// exactly, and `None` where there is none. The coefficients stand lowest power first.
+pub fn sharpened(coefficients: &[BigInt], ends: [f64; 2], bits: u32) -> Option<[Exact; 2]> {
+    let SquareFree { simple, chain, .. } = SquareFree::of(coefficients)?;
+    let [mut low, mut high] = ends.map(Exact::of);
+    if simple.sign_at(&Point::dyadic(&low)) == Sign::NoSign {
+        return Some([low.clone(), low]);
+    }
+    let mut count = chain.count(&Point::dyadic(&low), &Point::dyadic(&high));
+    let mut at_high = simple.sign_at(&Point::dyadic(&high));
+    for _ in 0..bits {
+        if count == 0 {
+            return None;
+        }
+        let middle = low.plus(&high).shifted(-1);
+        let point = Point::dyadic(&middle);
+        let sign = simple.sign_at(&point);
+        // The sign decides on which side a single root is, the chain where the first of several is.
+        let before = if count > 1 {
+            chain.count(&Point::dyadic(&low), &point)
+        } else {
+            usize::from(sign == at_high || sign == Sign::NoSign)
+        };
+        if before == 0 {
+            low = middle;
+            continue;
+        }
+        if before == 1 && sign == Sign::NoSign {
+            return Some([middle.clone(), middle]);
+        }
+        (high, count, at_high) = (middle, before, sign);
+    }
+    Some([low, high])
 }

@@ -6,7 +6,7 @@
 //! where cones of the enclosed slopes over both ends do not reach zero (the mean value form, from
 //! both ends; Piyavskii 1972). A run of pieces with slopes of one sign between ends of different
 //! signs holds exactly one zero. What is neither is cut again, leftmost first, until the sign of
-//! the function can no longer be told at any of the cuts; such a *cluster* holds a zero if the
+//! the function is not certain at any of the cuts; such a *cluster* holds a zero if the
 //! signs at its ends differ, and is undecided otherwise: a zero of even multiplicity, or none.
 
 use super::{Outcome, Root};
@@ -39,11 +39,11 @@ pub trait Enclosed {
     }
 }
 
-/// A finder's answer, and what it cost.
+/// A finder's answer and its cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Search {
     pub outcome: Outcome,
-    /// How many times eight enclosures were asked for.
+    /// Evaluations of the function, each of eight enclosures.
     pub evaluations: u32,
 }
 
@@ -87,7 +87,7 @@ enum Part {
     Open([End; 2], bool),
 }
 
-/// Zeros that cannot be told apart from none, up to now.
+/// A stretch that may or may not hold zeros.
 #[derive(Debug, Clone, Copy)]
 struct Cluster {
     from: f64,
@@ -191,7 +191,7 @@ impl<F: Enclosed> State<'_, F> {
         }
     }
 
-    /// Not asked of the whole stretch, of which nothing is known yet.
+    /// Not tried on the whole stretch, of which nothing is known yet.
     fn jumps_over_zero(&mut self, from: f64, to: f64) -> bool {
         if self.evaluations == 1 {
             return false;
@@ -200,7 +200,7 @@ impl<F: Enclosed> State<'_, F> {
         self.function.jumps_over_zero(from, to)
     }
 
-    /// Cuts a part and puts the pieces in its place; false where that tells nothing new.
+    /// Cuts a part and puts the pieces in its place; false where nothing new is learnt.
     fn cut(&mut self, [a, b]: [End; 2], parts: &mut Vec<Part>) -> bool {
         let mut t = [a.t; PIECES + 1];
         for (t, cut) in t[1..].iter_mut().zip(CUTS) {
@@ -214,13 +214,11 @@ impl<F: Enclosed> State<'_, F> {
         let to: [f64; PIECES] = std::array::from_fn(|i| t[i + 1]);
         self.evaluations += 1;
         let pieces = self.function.over(&from, &to);
-        let excluded = |i: usize| pieces.excludes(i);
-        if (0..PIECES).all(|i| excluded(i).is_some()) {
-            parts.extend(
-                (0..PIECES)
-                    .rev()
-                    .filter_map(|i| excluded(i).map(Part::Clear)),
-            );
+        let excluded = (0..PIECES)
+            .rev()
+            .map(|i| pieces.excludes(i).map(Part::Clear));
+        if let Some(clear) = excluded.collect::<Option<Vec<Part>>>() {
+            parts.extend(clear);
             return true;
         }
         let inner = self.ends(&to);
@@ -241,9 +239,9 @@ impl<F: Enclosed> State<'_, F> {
 
     /// Narrows the enclosure of the only zero between two ends of different signs.
     ///
-    /// Regula falsi tells where the zero should be; eight points around it, at distances from an
-    /// eighth of the width down to its 2⁻²⁶th, tell by their signs how good that was. Where it was
-    /// not, eight points at equal distances do. The end is where the signs near the zero are lost
+    /// Regula falsi estimates the zero; the signs at eight points around it, at distances from an
+    /// eighth of the width down to its 2⁻²⁶th, narrow the bracket. Where they do not halve it, eight
+    /// points at equal distances follow. The end is where the signs near the zero are lost
     /// in rounding: the values at the ends are as uncertain as they are different.
     fn refined(&mut self, mut bracket: [End; 2]) -> Outcome {
         let mut guess = true;
@@ -285,7 +283,7 @@ fn narrow([a, b]: &mut [End; 2], points: &[End]) {
     }
 }
 
-/// Whether the values at the ends differ by less than twice of what is not known of them.
+/// Whether the values at the ends differ by less than twice their uncertainty.
 fn lost_in_rounding([a, b]: &[End; 2]) -> bool {
     let unknown = (a.value[1] - a.value[0]) + (b.value[1] - b.value[0]);
     let difference = (a.value[0] + 0.5 * (a.value[1] - a.value[0]))
@@ -331,12 +329,13 @@ fn concluded(cluster: &Cluster, after: i8) -> Outcome {
     }
 }
 
-impl Pieces {
-    fn value_of(&self, i: usize) -> [f64; 2] {
-        self.value.map(|bound| bound[i])
-    }
+/// The bounds of one piece or point.
+pub(super) fn of(bounds: &[[f64; PIECES]; 2], i: usize) -> [f64; 2] {
+    [bounds[0][i], bounds[1][i]]
+}
 
-    fn broken_at(&self, i: usize) -> bool {
+impl Pieces {
+    pub(super) fn broken_at(&self, i: usize) -> bool {
         self.broken >> i & 1 == 1
     }
 
@@ -345,7 +344,7 @@ impl Pieces {
         if self.void >> i & 1 == 1 {
             return Some(0);
         }
-        let sign = sign(self.value_of(i));
+        let sign = sign(of(&self.value, i));
         // Where it may jump, one sign is still the sign everywhere that it is defined.
         (sign != 0).then_some(sign)
     }
@@ -355,7 +354,7 @@ impl Pieces {
         if self.broken_at(i) {
             0
         } else {
-            sign(self.slope.map(|bound| bound[i]))
+            sign(of(&self.slope, i))
         }
     }
 
@@ -365,7 +364,7 @@ impl Pieces {
     /// at least s < 0, and for v/S to the left of the right end if they are at most S > 0. The
     /// quotients, their sum and the width are off by a few 2⁻⁵³, or by underflow.
     fn cones_clear(&self, i: usize, ends: &[End], sign: i8) -> bool {
-        let [low, high] = self.slope.map(|bound| bound[i]);
+        let [low, high] = of(&self.slope, i);
         let [a, b] = [&ends[i], &ends[i + 1]];
         let (va, vb, fall, rise) = if sign > 0 {
             (a.value[0], b.value[0], -low, high)
@@ -384,7 +383,8 @@ impl Pieces {
     }
 }
 
-/// What each piece, or each run of pieces over which the function is monotone, holds.
+/// The parts that pieces are, one for each run of pieces over which the function is monotone and has
+/// its zero.
 fn classified(pieces: &Pieces, ends: &[End; PIECES + 1]) -> Vec<Part> {
     let mut parts = Vec::with_capacity(PIECES);
     let mut i = 0;
@@ -413,21 +413,14 @@ fn classified(pieces: &Pieces, ends: &[End; PIECES + 1]) -> Vec<Part> {
 
 /// The crossing of a monotone run, between the last end before it and the first after it.
 fn narrowest(ends: &[End], direction: i8) -> Part {
-    let mut bracket = [ends[0], ends[ends.len() - 1]];
-    for end in ends {
-        if end.sign() == -direction {
-            bracket[0] = *end;
-        }
-    }
-    for end in ends.iter().rev() {
-        if end.sign() == direction {
-            bracket[1] = *end;
-        }
-    }
-    Part::Crossing(bracket)
+    let before = ends.iter().rfind(|end| end.sign() == -direction);
+    let after = ends.iter().find(|end| end.sign() == direction);
+    // The outermost ends have these signs: the caller has looked.
+    let (first, last) = (&ends[0], &ends[ends.len() - 1]);
+    Part::Crossing([*before.unwrap_or(first), *after.unwrap_or(last)])
 }
 
-/// What a piece holds that is in no run with a crossing.
+/// The part that a piece is which belongs to no run with a crossing.
 fn single(pieces: &Pieces, ends: &[End; PIECES + 1], i: usize) -> Part {
     let bracket = [ends[i], ends[i + 1]];
     let [before, after] = bracket.map(|end| end.sign());
@@ -443,4 +436,39 @@ fn single(pieces: &Pieces, ends: &[End; PIECES + 1], i: usize) -> Part {
         return Part::Clear(before);
     }
     Part::Open(bracket, broken)
+}
+
+/// Where the search for the next zero begins on a ray that leaves a surface: it starts at a zero whose
+/// place is known up to rounding.
+///
+/// `blurred` encloses the function for all starts that rounding may have put in the place of the true
+/// one, `sharp` for the start as given. Up to the returned t the function is monotone, so that no start
+/// has a zero besides its own, and at t it has the sign of the side that the ray leaves to. 0 where no
+/// start is a zero of this function; `None` where neither can be proved, as for a ray along the
+/// surface.
+pub fn departure<B: Enclosed, S: Enclosed>(blurred: &mut B, sharp: &mut S, to: f64) -> Option<f64> {
+    let mut width = to;
+    // Two rounds reach down to 8⁻¹⁵ = 3e-14 of the stretch.
+    for _ in 0..2 {
+        let mut ends = [width; PIECES];
+        for end in &mut ends {
+            *end = width;
+            width *= 0.125;
+        }
+        let pieces = blurred.over(&[0.0; PIECES], &ends);
+        let values = sharp.at(&ends);
+        for (i, &end) in ends.iter().enumerate() {
+            if pieces.broken_at(i) {
+                continue;
+            }
+            if sign(of(&pieces.value, i)) != 0 {
+                return Some(0.0);
+            }
+            let direction = sign(of(&pieces.slope, i));
+            if direction != 0 && sign(of(&values, i)) == direction {
+                return Some(end);
+            }
+        }
+    }
+    None
 }

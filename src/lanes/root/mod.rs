@@ -1,14 +1,12 @@
 //! Root finders: siblings that look for the first zero of a function of one variable.
 //!
 //! Each answers *found* with an enclosure, *absent* as a proof, or *undecided*; none of them turns
-//! the third into one of the others. They know neither rays nor surfaces: what they are given is
-//! the function along a stretch of t.
+//! the third into one of the others. Their only argument is a function on a
+//! stretch of t: rays and surfaces are not known here.
 
 pub mod bernstein;
-pub mod departure;
 pub mod exact;
 pub mod interval;
-pub mod sharpen;
 pub mod sign_change;
 pub mod sphere_trace;
 
@@ -21,7 +19,7 @@ pub struct Root {
     pub multiplicity: Option<u32>,
 }
 
-/// What a finder knows of the first zero within a stretch.
+/// A finder's answer about the first zero within a stretch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Outcome {
     Found(Root),

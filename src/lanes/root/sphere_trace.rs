@@ -6,7 +6,7 @@
 //! tracing", for steps longer than one ball). The values and the bound are enclosures, so that a
 //! stretch called clear is clear.
 
-use super::interval::{Enclosed, PIECES, Search, sign};
+use super::interval::{Enclosed, PIECES, Search, of, sign};
 use super::{Outcome, Root};
 
 /// The first zero in [from, to], after at most `bound` evaluations.
@@ -31,19 +31,15 @@ pub fn first_zero<F: Enclosed>(
     let pieces = function.over(&starts, &ends);
     let mut evaluations = 1;
     for i in 0..PIECES {
-        let [low, high] = pieces.slope.map(|slope| slope[i]);
+        let [low, high] = of(&pieces.slope, i);
         // A jump has no Lipschitz bound, whatever the slopes beside it.
-        let known = if pieces.broken >> i & 1 == 1 {
+        let known = if pieces.broken_at(i) {
             f64::INFINITY
         } else {
             lipschitz.min(high.max(-low)).max(0.0)
         };
-        let piece = within(
-            function,
-            [starts[i], ends[i]],
-            known,
-            bound - evaluations.min(bound),
-        );
+        let left = bound.saturating_sub(evaluations);
+        let piece = within(function, [starts[i], ends[i]], known, left);
         evaluations += piece.evaluations;
         if piece.outcome != Outcome::Absent {
             return Search::new(piece.outcome, evaluations);
@@ -83,6 +79,7 @@ fn within<F: Enclosed>(
         }
         let gained = march.clear - before;
         let size = before.abs().max(end.abs());
+        // Four units in the last place: smaller steps are rounding errors of t.
         let resolution = 4.0 * f64::EPSILON * size;
         let stuck = gained <= 0.0 && step <= resolution;
         match march.opposite {
@@ -148,9 +145,10 @@ impl March {
         }
     }
 
-    fn advance(&mut self, points: &[f64; PIECES], [low, high]: [[f64; PIECES]; 2]) {
-        for i in 0..PIECES {
-            let (t, sign) = (points[i], sign([low[i], high[i]]));
+    fn advance(&mut self, points: &[f64; PIECES], values: [[f64; PIECES]; 2]) {
+        for (i, &t) in points.iter().enumerate() {
+            let [low, high] = of(&values, i);
+            let sign = sign([low, high]);
             if sign == 0 {
                 continue;
             }
@@ -165,8 +163,8 @@ impl March {
                 return;
             }
             // Lower bounds of the radius and upper ones of the gap: the quotient and the
-            // differences are off by some 2⁻⁵³ of what they are made of.
-            let value = if sign > 0 { low[i] } else { -high[i] };
+            // differences are off by some 2⁻⁵³ of their operands.
+            let value = if sign > 0 { low } else { -high };
             let radius = if self.lipschitz > 0.0 {
                 value / self.lipschitz * (1.0 - 4.0 * f64::EPSILON)
             } else {
@@ -179,7 +177,7 @@ impl March {
     }
 
     /// The end where balls have become too small to move on although a change of sign lies ahead:
-    /// the first opposite sign that can be told, unless the old sign comes back in between.
+    /// the first opposite sign that is certain, unless the old sign comes back in between.
     fn narrowed<F: Enclosed>(
         &mut self,
         function: &mut F,
@@ -191,9 +189,9 @@ impl March {
         {
             let width = end - self.clear;
             let t = std::array::from_fn(|i| self.clear + width * (i as f64 + 1.0) / 9.0);
-            let [low, high] = function.at(&t);
+            let values = function.at(&t);
             *evaluations += 1;
-            let sign = |i: usize| sign([low[i], high[i]]);
+            let sign = |i: usize| sign(of(&values, i));
             if (0..PIECES).any(|i| sign(i) == self.sign) {
                 return Outcome::Undecided;
             }

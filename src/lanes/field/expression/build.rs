@@ -20,7 +20,7 @@ pub(super) enum Value {
 pub(super) struct Builder {
     tape: Tape,
     spans: Vec<Range<usize>>,
-    /// The bytes of the text that write what is being added.
+    /// The bytes of the text that the operation being added comes from.
     pub span: Range<usize>,
 }
 
@@ -61,8 +61,8 @@ impl Builder {
         }
     }
 
-    /// A binary operation as it stands; sums, products, minima and maxima in one order, so that
-    /// both orders are one operation.
+    /// A binary operation without simplification; the operands of sums, products, minima and maxima are
+    /// sorted, so that both orders are one operation.
     fn push_binary(&mut self, function: Binary, a: Value, b: Value) -> Built {
         let (a, b) = (self.place(a)?, self.place(b)?);
         let commutes = matches!(
@@ -104,8 +104,7 @@ impl Builder {
     pub fn product(&mut self, a: Value, b: Value) -> Built {
         match (&a, &b) {
             (Value::Constant(a), Value::Constant(b)) => constant(a * b),
-            (Value::Constant(c), other) | (other, Value::Constant(c)) if c.is_zero() => {
-                let _ = other;
+            (Value::Constant(c), _) | (_, Value::Constant(c)) if c.is_zero() => {
                 constant(BigRational::zero())
             }
             (Value::Constant(c), other) | (other, Value::Constant(c)) if c.is_one() => {
@@ -161,10 +160,9 @@ impl Builder {
     }
 
     fn general_power(&mut self, base: Value, exponent: Value) -> Built {
+        let undefined = Problem::Undefined("a power of a constant that is not positive");
         match &base {
-            Value::Constant(c) if !c.is_positive() => Err(Problem::Undefined(
-                "a power of a constant that is not positive",
-            )),
+            Value::Constant(c) if !c.is_positive() => Err(undefined),
             _ => self.push_binary(Binary::Power, base, exponent),
         }
     }
@@ -178,11 +176,8 @@ impl Builder {
         if n == 1 {
             return Ok(Value::Result(place));
         }
-        let (inner, m) = if n > 0 {
-            self.as_power(place)
-        } else {
-            (place, 1)
-        };
+        let power = (n > 0).then(|| self.as_power(place));
+        let (inner, m) = power.unwrap_or((place, 1));
         let total = m.checked_mul(n).filter(|t| t.abs() <= MOST_EXPONENT);
         let total = total.ok_or(Problem::ExponentTooLarge)?;
         self.push(Operation::WholePower(inner, total))
@@ -190,17 +185,15 @@ impl Builder {
 
     pub fn unary(&mut self, function: Unary, a: Value) -> Built {
         match a {
-            Value::Constant(c) => match fold::unary(function, &c)? {
-                Some(value) => constant(value),
-                None => {
-                    let place = self.place(Value::Constant(c))?;
-                    self.push(Operation::Unary(function, place))
+            Value::Constant(c) => {
+                if let Some(value) = fold::unary(function, &c)? {
+                    return constant(value);
                 }
-            },
+                let place = self.place(Value::Constant(c))?;
+                self.push(Operation::Unary(function, place))
+            }
             Value::Result(place) => match (function, self.tape.operations()[place]) {
-                (Unary::Negative, Operation::Unary(Unary::Negative, inner)) => {
-                    Ok(Value::Result(inner))
-                }
+                (Unary::Negative, Operation::Unary(Unary::Negative, x)) => Ok(Value::Result(x)),
                 (Unary::Absolute, Operation::Unary(Unary::Absolute, _)) => Ok(a),
                 _ => self.push(Operation::Unary(function, place)),
             },
@@ -223,9 +216,6 @@ impl Builder {
 }
 
 fn constant(value: BigRational) -> Built {
-    if fits(&value) {
-        Ok(Value::Constant(value))
-    } else {
-        Err(Problem::TooManyDigits)
-    }
+    let kept = Some(value).filter(fits).ok_or(Problem::TooManyDigits)?;
+    Ok(Value::Constant(kept))
 }

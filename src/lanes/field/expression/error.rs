@@ -1,4 +1,4 @@
-//! What can be wrong with an expression.
+//! Errors of expressions.
 
 use std::ops::Range;
 
@@ -10,24 +10,21 @@ pub struct ExpressionError {
     pub problem: Problem,
     /// The bytes of the expression it is about; empty at its end.
     pub span: Range<usize>,
-    /// What would have been right there.
+    /// What the grammar allows there instead.
     pub expected: Option<String>,
-    /// Where a name is unknown, all that would have been known.
+    /// Where a name is unknown, all known names.
     pub names: Vec<String>,
 }
 
 impl ExpressionError {
-    pub(super) fn new(problem: Problem, span: Range<usize>) -> Self {
-        Self {
-            expected: problem.expected(),
-            problem,
-            span,
-            names: Vec::new(),
-        }
-    }
-
     pub(super) fn expected(mut self, expected: impl Into<String>) -> Self {
         self.expected = Some(expected.into());
+        self
+    }
+
+    /// With all known names.
+    pub(super) fn names<'a>(mut self, names: impl IntoIterator<Item = &'a str>) -> Self {
+        self.names = names.into_iter().map(str::to_owned).collect();
         self
     }
 }
@@ -35,7 +32,7 @@ impl ExpressionError {
 impl From<Problem> for ExpressionError {
     /// A problem of a text as a whole.
     fn from(problem: Problem) -> Self {
-        Self::new(problem, 0..0)
+        problem.at(0..0)
     }
 }
 
@@ -88,7 +85,16 @@ pub enum Problem {
 }
 
 impl Problem {
-    /// What would have been right, where the kind alone says it.
+    pub(super) fn at(self, span: Range<usize>) -> ExpressionError {
+        ExpressionError {
+            expected: self.expected(),
+            problem: self,
+            span,
+            names: Vec::new(),
+        }
+    }
+
+    /// What is allowed instead, where it follows from the kind of problem alone.
     fn expected(&self) -> Option<String> {
         let words = match self {
             Self::Empty | Self::Constant | Self::EverywhereZero => {

@@ -5,7 +5,7 @@ use num_traits::{One, Signed, Zero};
 
 use super::MOST_BITS;
 use super::error::Problem;
-use crate::field::rational::square_root;
+use crate::field::structure::square_root;
 use crate::field::tape::Unary;
 
 pub(super) fn whole_power(c: &BigRational, n: i32) -> Result<BigRational, Problem> {
@@ -27,7 +27,7 @@ pub(super) fn whole_power(c: &BigRational, n: i32) -> Result<BigRational, Proble
     Ok(c.pow(n))
 }
 
-/// f(c) where that is rational and known to be: `None` leaves it to the tape.
+/// f(c) where that is known to be rational; `None` leaves the function on the tape.
 pub(super) fn unary(function: Unary, c: &BigRational) -> Result<Option<BigRational>, Problem> {
     let undefined = |what| Err(Problem::Undefined(what));
     let zero = || Some(BigRational::zero());

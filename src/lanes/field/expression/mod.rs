@@ -9,7 +9,7 @@
 //! ```
 //!
 //! Numbers are the rationals they look like: `0.1` is one tenth and `9/80` is no double. Names are
-//! x, y, z, `pi` (as 4·atan 1, so that each arithmetic knows it as well as it can), parameters and
+//! x, y, z, `pi` (as 4·atan 1, so that each arithmetic has it as exactly as it can), parameters and
 //! the functions of [`FUNCTIONS`]. Operations on constants are done exactly where the result is
 //! rational, and left on the tape where it is not.
 
@@ -123,13 +123,9 @@ impl Expression {
 pub fn parse(text: &str, parameters: &[Parameter]) -> Result<Expression, ExpressionError> {
     let (builder, value) = Parser::read(text, parameters, true)?;
     let whole = text.len() - text.trim_start().len()..text.trim_end().len();
-    let nowhere = |zero: bool| {
-        let problem = if zero {
-            Problem::EverywhereZero
-        } else {
-            Problem::Constant
-        };
-        Err(ExpressionError::new(problem, whole.clone()))
+    let nowhere = |zero: bool| match zero {
+        true => Err(Problem::EverywhereZero.at(whole.clone())),
+        false => Err(Problem::Constant.at(whole.clone())),
     };
     let root = match value {
         Value::Constant(c) => return nowhere(c == BigRational::default()),
@@ -161,7 +157,7 @@ pub fn parse_constant(
 ) -> Result<BigRational, ExpressionError> {
     match Parser::read(text, parameters, false)? {
         (_, Value::Constant(value)) => Ok(value),
-        _ => Err(ExpressionError::new(Problem::NotRational, 0..text.len())),
+        _ => Err(Problem::NotRational.at(0..text.len())),
     }
 }
 
@@ -174,8 +170,6 @@ pub fn check_name(name: &str) -> Result<(), Problem> {
     if taken {
         return Err(Problem::NameTaken(name.to_owned()));
     }
-    if token::is_name(name) {
-        return Ok(());
-    }
-    Err(Problem::NotAName(name.to_owned()))
+    let not_a_name = || Problem::NotAName(name.to_owned());
+    token::is_name(name).then_some(()).ok_or_else(not_a_name)
 }

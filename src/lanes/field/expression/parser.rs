@@ -20,9 +20,9 @@ pub(super) struct Parser<'a> {
     builder: Builder,
 }
 
-/// What may stand where a value begins.
+/// What may begin a value.
 const VALUE: &str = "a number, a name, a function or \"(\"";
-/// What may stand where a value has ended.
+/// What may follow a value.
 const OPERATOR: &str = "one of + - * / ^";
 
 impl<'a> Parser<'a> {
@@ -32,7 +32,7 @@ impl<'a> Parser<'a> {
         coordinates: bool,
     ) -> Result<(Builder, Value), ExpressionError> {
         if text.len() > LONGEST {
-            return Err(ExpressionError::new(Problem::TooLong, LONGEST..text.len()));
+            return Err(Problem::TooLong.at(LONGEST..text.len()));
         }
         let mut parser = Self {
             text,
@@ -43,12 +43,12 @@ impl<'a> Parser<'a> {
             builder: Builder::default(),
         };
         if parser.token.word == Word::End {
-            return Err(ExpressionError::new(Problem::Empty, 0..text.len()));
+            return Err(Problem::Empty.at(0..text.len()));
         }
         let (value, _) = parser.sum()?;
         match parser.token.word {
             Word::End => Ok((parser.builder, value)),
-            Word::Mark(b')') => Err(ExpressionError::new(Problem::Closing, parser.token.span)),
+            Word::Mark(b')') => Err(Problem::Closing.at(parser.token.span)),
             _ => Err(parser.unexpected(OPERATOR)),
         }
     }
@@ -68,14 +68,14 @@ impl<'a> Parser<'a> {
             Word::End => Problem::End,
             _ => Problem::Unexpected(self.text[span.clone()].to_owned()),
         };
-        ExpressionError::new(problem, span).expected(expected)
+        problem.at(span).expected(expected)
     }
 
     /// One level further down, with a bound on how many there are.
     fn deeper(&mut self, read: impl FnOnce(&mut Self) -> Parsed) -> Parsed {
         if self.depth == DEEPEST {
             let span = self.token.span.clone();
-            return Err(ExpressionError::new(Problem::TooDeep, span));
+            return Err(Problem::TooDeep.at(span));
         }
         self.depth += 1;
         let parsed = read(self);
@@ -91,34 +91,41 @@ impl<'a> Parser<'a> {
         self.builder.span = span.clone();
         match make(&mut self.builder) {
             Ok(value) => Ok((value, span)),
-            Err(problem) => Err(ExpressionError::new(problem, span)),
+            Err(problem) => Err(problem.at(span)),
         }
     }
 
     fn sum(&mut self) -> Parsed {
-        let (mut left, mut span) = self.product()?;
-        while let Word::Mark(mark @ (b'+' | b'-')) = self.token.word {
-            self.advance()?;
-            let (right, end) = self.product()?;
-            let whole = span.start..end.end;
-            (left, span) = self.make(whole, |builder| match mark {
-                b'+' => builder.sum(left, right),
-                _ => builder.difference(left, right),
-            })?;
-        }
-        Ok((left, span))
+        let add = |mark, builder: &mut Builder, left, right| match mark {
+            b'+' => builder.sum(left, right),
+            _ => builder.difference(left, right),
+        };
+        self.chain(b"+-", Self::product, add)
     }
 
     fn product(&mut self) -> Parsed {
-        let (mut left, mut span) = self.sign()?;
-        while let Word::Mark(mark @ (b'*' | b'/')) = self.token.word {
+        let multiply = |mark, builder: &mut Builder, left, right| match mark {
+            b'*' => builder.product(left, right),
+            _ => builder.quotient(left, right),
+        };
+        self.chain(b"*/", Self::sign, multiply)
+    }
+
+    /// Operands with marks between, joined from left to right.
+    fn chain(
+        &mut self,
+        marks: &[u8; 2],
+        operand: impl Fn(&mut Self) -> Parsed,
+        join: impl Fn(u8, &mut Builder, Value, Value) -> Result<Value, Problem>,
+    ) -> Parsed {
+        let (mut left, mut span) = operand(self)?;
+        while let Word::Mark(mark) = self.token.word
+            && marks.contains(&mark)
+        {
             self.advance()?;
-            let (right, end) = self.sign()?;
+            let (right, end) = operand(self)?;
             let whole = span.start..end.end;
-            (left, span) = self.make(whole, |builder| match mark {
-                b'*' => builder.product(left, right),
-                _ => builder.quotient(left, right),
-            })?;
+            (left, span) = self.make(whole, |builder| join(mark, builder, left, right))?;
         }
         Ok((left, span))
     }
@@ -177,7 +184,7 @@ impl<'a> Parser<'a> {
     ) -> Result<Range<usize>, ExpressionError> {
         match self.token.word {
             Word::Mark(b')') => Ok(self.advance()?.span),
-            Word::End => Err(ExpressionError::new(Problem::Opening, open.clone())),
+            Word::End => Err(Problem::Opening.at(open.clone())),
             _ => Err(self.unexpected(expected)),
         }
     }
@@ -195,45 +202,30 @@ impl<'a> Parser<'a> {
             Some(axis) if self.coordinates => {
                 return self.make(span, |builder| builder.push(Operation::Coordinate(axis)));
             }
-            Some(_) => {
-                return Err(ExpressionError::new(
-                    Problem::Coordinate(name.to_owned()),
-                    span,
-                ));
-            }
+            Some(_) => return Err(Problem::Coordinate(name.to_owned()).at(span)),
             None => {}
         }
         if name == "pi" {
             return self.make(span, Builder::pi);
         }
         if FUNCTIONS.iter().any(|(known, _)| *known == name) {
-            return Err(ExpressionError::new(Problem::NoCall(name.to_owned()), span));
+            return Err(Problem::NoCall(name.to_owned()).at(span));
         }
-        let mut error = ExpressionError::new(Problem::UnknownName(name.to_owned()), span);
-        let parameters = self.parameters.iter().map(|p| p.name.clone());
-        error.names = RESERVED
-            .iter()
-            .map(|n| (*n).to_owned())
-            .chain(parameters)
-            .collect();
-        // A misspelt function without its arguments is still best told its name.
-        error
-            .names
-            .extend(FUNCTIONS.iter().map(|(n, _)| (*n).to_owned()));
-        Err(error)
+        let parameters = self.parameters.iter().map(|p| p.name.as_str());
+        // It may be a misspelt function without its arguments.
+        let functions = FUNCTIONS.iter().map(|(name, _)| *name);
+        let names = RESERVED.iter().copied().chain(parameters).chain(functions);
+        Err(Problem::UnknownName(name.to_owned()).at(span).names(names))
     }
 
     fn call(&mut self, name: &str, span: Range<usize>) -> Parsed {
         let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
             let taken = RESERVED.contains(&name) || self.parameters.iter().any(|p| p.name == name);
-            let problem = Problem::UnknownFunction(name.to_owned());
-            let mut error = ExpressionError::new(problem, span);
-            if taken {
-                error.expected = Some("an operator between a name and \"(\", such as *".to_owned());
-            } else {
-                error.names = FUNCTIONS.iter().map(|(n, _)| (*n).to_owned()).collect();
-            }
-            return Err(error);
+            let error = Problem::UnknownFunction(name.to_owned()).at(span);
+            return Err(match taken {
+                true => error.expected("an operator between a name and \"(\", such as *"),
+                false => error.names(FUNCTIONS.iter().map(|(name, _)| *name)),
+            });
         };
         let open = self.advance()?.span;
         let mut arguments = Vec::new();
@@ -254,9 +246,8 @@ impl<'a> Parser<'a> {
         if found < wanted || (found > wanted && !several) {
             let name = name.to_owned();
             let more = if several { " or more" } else { "" };
-            let words = format!("{wanted}{more}");
-            let error = ExpressionError::new(Problem::Arguments { name, found }, whole);
-            return Err(error.expected(words));
+            let error = Problem::Arguments { name, found }.at(whole);
+            return Err(error.expected(format!("{wanted}{more}")));
         }
         self.make(whole, |builder| apply(builder, *function, arguments))
     }

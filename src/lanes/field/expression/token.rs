@@ -38,17 +38,14 @@ pub(super) fn next(text: &str, from: usize) -> Result<Token, ExpressionError> {
     match first {
         b'+' | b'-' | b'*' | b'/' | b'^' | b'(' | b')' | b',' => Ok(token(Word::Mark(first), 1)),
         b'0'..=b'9' | b'.' => match number_length(rest) {
-            0 => Err(ExpressionError::new(
-                Problem::Character('.'),
-                start..start + 1,
-            )),
+            0 => Err(Problem::Character('.').at(start..start + 1)),
             length => Ok(token(Word::Number, length)),
         },
         _ if begins_name(first) => Ok(token(Word::Name, count(rest, in_name))),
         _ => {
             let character = text[start..].chars().next().unwrap_or(' ');
             let span = start..start + character.len_utf8();
-            let error = ExpressionError::new(Problem::Character(character), span);
+            let error = Problem::Character(character).at(span);
             Err(match plain(character) {
                 Some(written) => error.expected(format!("\"{written}\"")),
                 None => error,
@@ -108,9 +105,7 @@ fn number_length(bytes: &[u8]) -> usize {
     }
     if matches!(bytes.get(length), Some(b'e' | b'E')) {
         let sign = usize::from(matches!(bytes.get(length + 1), Some(b'+' | b'-')));
-        let exponent = bytes
-            .get(length + 1 + sign..)
-            .map_or(0, |rest| count(rest, |b| b.is_ascii_digit()));
+        let exponent = digits((length + 1 + sign).min(bytes.len()));
         if exponent > 0 {
             length += 1 + sign + exponent;
         }
@@ -118,7 +113,7 @@ fn number_length(bytes: &[u8]) -> usize {
     length
 }
 
-/// The rational number a decimal says: an optional sign, digits, an optional point, an optional
+/// The rational number that a decimal denotes: an optional sign, digits, an optional point, an optional
 /// exponent. `None` where it is something else or beyond [`MOST_BITS`].
 pub fn rational(text: &str) -> Option<BigRational> {
     let (negative, unsigned) = match text.strip_prefix('-') {
@@ -129,9 +124,7 @@ pub fn rational(text: &str) -> Option<BigRational> {
     if bytes.is_empty() || number_length(bytes) != bytes.len() {
         return None;
     }
-    let (significand, exponent) = unsigned
-        .split_once(['e', 'E'])
-        .map_or((unsigned, "0"), |(s, e)| (s, e));
+    let (significand, exponent) = unsigned.split_once(['e', 'E']).unwrap_or((unsigned, "0"));
     let (whole, fraction) = significand.split_once('.').unwrap_or((significand, ""));
     let digits: String = [whole, fraction].concat();
     // Ten needs more than three bits: longer ones are beyond the limit in any case.

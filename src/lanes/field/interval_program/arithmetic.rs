@@ -7,7 +7,9 @@ use crate::math::jet::Jet;
 use crate::math::lanes::Real;
 
 /// An arithmetic that evaluates programs.
-pub(super) trait Arithmetic<L: DoubleLanes>: Copy {
+pub trait Arithmetic<L: DoubleLanes>: Copy {
+    /// The enclosure of which nothing is proved.
+    fn anything(l: L) -> Self;
     fn constant(value: Interval<L>) -> Self;
     fn unary(self, function: Unary, domain: &mut Domain<L>) -> Self;
     fn binary(self, function: Binary, other: Self, domain: &mut Domain<L>) -> Self;
@@ -27,7 +29,11 @@ fn function_of<L: DoubleLanes>(
 ) -> Interval<L> {
     a.lanes.vectorize(inlined!(|| match function {
         Unary::Negative => -*a,
-        Unary::SquareRoot => a.square_root_noted(domain),
+        Unary::SquareRoot => {
+            let zero = a.lanes.real(0.0);
+            domain.note(!a.low.ge(zero), a.high.lt(zero));
+            a.square_root()
+        }
         Unary::Absolute => a.absolute(),
         Unary::Exponential => a.exponential(),
         Unary::Logarithm => a.logarithm(domain),
@@ -99,6 +105,7 @@ fn whole_power_of<L: DoubleLanes>(a: &Jet<L>, n: i32, domain: &mut Domain<L>) ->
 
 impl<L: DoubleLanes> Arithmetic<L> for Interval<L> {
     methods! {
+        fn anything(l: L) -> Self = Self::whole(l);
         fn constant(value: Interval<L>) -> Self = value;
         fn unary(self, function: Unary, domain: &mut Domain<L>) -> Self =
             function_of(function, &self, domain);
@@ -127,6 +134,7 @@ impl<L: DoubleLanes> Arithmetic<L> for Interval<L> {
 
 impl<L: DoubleLanes> Arithmetic<L> for Jet<L> {
     methods! {
+        fn anything(l: L) -> Self = Self::new(Interval::whole(l), Interval::whole(l));
         fn constant(value: Interval<L>) -> Self =
             Self::new(value, Interval::splat(value.lanes, [0.0, 0.0]));
         fn whole_power(self, n: i32, domain: &mut Domain<L>) -> Self =
@@ -155,12 +163,15 @@ impl<L: DoubleLanes> Arithmetic<L> for Jet<L> {
             Binary::Minimum => self.smaller(other),
             Binary::Maximum => self.larger(other),
             Binary::ArcTangent2 | Binary::Power => {
-                let value = function_of_two(function, [&self.value, &other.value], domain);
+                let (a, b) = (self.value, other.value);
+                let value = function_of_two(function, [&a, &b], domain);
                 let slope = if function == Binary::Power {
-                    let logarithm = function_of(Unary::Logarithm, &self.value, domain);
-                    self.slope_of_power(other, value, logarithm)
+                    // aᵇ (b′ ln a + b a′/a)
+                    let logarithm = function_of(Unary::Logarithm, &a, domain);
+                    value * (other.slope * logarithm + b * self.slope / a)
                 } else {
-                    self.slope_of_angle(other)
+                    // (b a′ − a b′)/(b² + a²)
+                    (b * self.slope - a * other.slope) / (b.squared() + a.squared())
                 };
                 Self::new(value, slope)
             }
@@ -179,6 +190,7 @@ pub struct Side<L: DoubleLanes>(pub(super) Interval<L>);
 
 impl<L: DoubleLanes> Arithmetic<L> for Side<L> {
     methods! {
+        fn anything(l: L) -> Self = Self(Interval::whole(l));
         fn constant(value: Interval<L>) -> Self = Self(value);
         fn squared(self) -> Self = Self(self.0.squared());
         fn times_number(self, c: f64) -> Self = Self(self.0.times_number(c));

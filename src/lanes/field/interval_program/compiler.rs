@@ -13,30 +13,31 @@ pub(super) struct Compiler<'a> {
     register: Vec<Option<Place>>,
 }
 
-impl<'a> Compiler<'a> {
-    pub fn new(tape: &'a Tape) -> Self {
-        Self {
+impl Compiler<'_> {
+    pub fn compiled(tape: &Tape) -> IntervalProgram {
+        let operations = tape.operations();
+        let mut compiler = Compiler {
             tape,
             steps: Vec::new(),
-            register: vec![None; tape.operations().len()],
-        }
-    }
-
-    pub fn run(mut self) -> IntervalProgram {
-        let operations = self.tape.operations();
-        let last = operations.len().wrapping_sub(1);
+            register: vec![None; operations.len()],
+        };
         for (place, &operation) in operations.iter().enumerate() {
-            if self.register[place].is_none() {
-                self.compile(place, operation);
+            if compiler.register[place].is_none() {
+                compiler.compile(place, operation);
             }
         }
+        let Compiler {
+            mut steps,
+            register,
+            ..
+        } = compiler;
         // The field is to be in the last register.
-        if let Some(&Some(register)) = self.register.get(last)
-            && register + 1 != self.steps.len()
+        if let Some(&Some(register)) = register.last()
+            && register + 1 != steps.len()
         {
-            self.steps.push(Step::TimesNumber(register, 1.0));
+            steps.push(Step::TimesNumber(register, 1.0));
         }
-        IntervalProgram { steps: self.steps }
+        IntervalProgram { steps }
     }
 
     fn compile(&mut self, place: Place, operation: Operation) {
@@ -45,9 +46,7 @@ impl<'a> Compiler<'a> {
             Operation::Constant(index) => {
                 Step::Constant(enclosing_rational(&self.tape.constants()[index]))
             }
-            Operation::Unary(function @ (Unary::Sine | Unary::Cosine), a) => {
-                return self.angle(place, function, a);
-            }
+            Operation::Unary(Unary::Sine | Unary::Cosine, a) => return self.angle(place, a),
             Operation::Unary(function, a) => Step::Unary(function, self.at(a)),
             Operation::Binary(function, a, b) => self.binary(function, a, b),
             Operation::WholePower(a, 1) => Step::TimesNumber(self.at(a), 1.0),
@@ -119,7 +118,7 @@ impl<'a> Compiler<'a> {
     }
 
     /// Sine and cosine of the same angle are computed together.
-    fn angle(&mut self, place: Place, function: Unary, a: Place) {
+    fn angle(&mut self, place: Place, a: Place) {
         let start = self.steps.len();
         self.steps.push(Step::SineCosine(self.at(a)));
         self.steps.push(Step::Filled);
@@ -132,6 +131,5 @@ impl<'a> Compiler<'a> {
                 _ => {}
             }
         }
-        debug_assert!(matches!(function, Unary::Sine | Unary::Cosine));
     }
 }

@@ -18,7 +18,7 @@ pub struct Bound {
     pub change: f64,
 }
 
-/// What a rounded arithmetic promises.
+/// The rounding errors of an arithmetic.
 #[derive(Debug, Clone, Copy)]
 pub struct Rounding {
     /// Error of one sum or product, relative to the sum or product of the magnitudes.
@@ -35,7 +35,7 @@ pub const PLAIN: Rounding = Rounding {
     parts: 1,
 };
 
-/// What an operation loses to underflow at most, with room for the few operations inside of a
+/// Largest error of an operation by underflow, with room for the few operations inside of a
 /// double-double one: 2⁻¹⁰⁷⁴ each.
 const UNDERFLOW: f64 = 64.0 * f64::from_bits(1);
 
@@ -132,7 +132,7 @@ fn elevated(form: &[Bound], rounding: Rounding) -> Vec<Bound> {
 impl Bound {
     fn of(factor: &Factor, rounding: Rounding) -> Self {
         let [high, low] = factor.parts;
-        // Each part is within a unit in the last place of what it stands for.
+        // Each part is within a unit in the last place of the exact one.
         let left = if rounding.parts == 1 {
             low
         } else {

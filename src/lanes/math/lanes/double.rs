@@ -48,6 +48,8 @@ impl<S: Simd> Lanes for Double<S> {
 
     methods! {
         fn int(self, x: u32) -> Self::Int = u64x8::splat(self.0, x.into());
+        fn truncate(self, x: Self::Real) -> Self::Int =
+            low32((SimdFloat::floor(x) + self.real(SHIFT)).bitcast());
         fn int_lane(self, x: Self::Int, i: usize) -> u32 = x[i & 7] as u32;
         fn lookup(self, table: &[f64; SMALL], i: Self::Int) -> Self::Real = lookup::double(self.0, table, i);
     }
@@ -79,10 +81,6 @@ impl<S: Simd> Lanes for Double<S> {
     fn with_int_lane(self, mut x: Self::Int, i: usize, value: u32) -> Self::Int {
         x[i & 7] = value.into();
         x
-    }
-    #[inline(always)]
-    fn truncate(self, x: Self::Real) -> Self::Int {
-        low32((SimdFloat::floor(x) + self.real(SHIFT)).bitcast())
     }
     #[inline(always)]
     fn to_real(self, x: Self::Int) -> Self::Real {

@@ -43,16 +43,16 @@ impl<S: Simd> Lanes for Single<S> {
         fn int(self, x: u32) -> Self::Int = u32x16::splat(self.0, x);
         fn load_int(self, from: &[u32]) -> Self::Int = u32x16::from_slice(self.0, &from[..16]);
         fn store_int(self, x: Self::Int, to: &mut [u32]) -> () = x.store_slice(&mut to[..16]);
+        fn lookup_int(self, table: &[u32; SMALL], index: Self::Int) -> Self::Int =
+            lookup::single(self.0, u32x16::from_slice(self.0, table), index);
+        fn power_of_two(self, e: Self::Real) -> Self::Real =
+            (self.truncate(e + self.real(127.0)) << 23).bitcast();
         fn int_lane(self, x: Self::Int, i: usize) -> u32 = x[i & 15];
     }
     #[inline(always)]
     fn lookup(self, table: &[f32; SMALL], index: Self::Int) -> Self::Real {
         let table = f32x16::from_slice(self.0, table);
         lookup::single(self.0, table.bitcast(), index).bitcast()
-    }
-    #[inline(always)]
-    fn lookup_int(self, table: &[u32; SMALL], index: Self::Int) -> Self::Int {
-        lookup::single(self.0, u32x16::from_slice(self.0, table), index)
     }
     #[inline(always)]
     fn with_int_lane(self, mut x: Self::Int, i: usize, value: u32) -> Self::Int {
@@ -75,9 +75,5 @@ impl<S: Simd> Lanes for Single<S> {
         let mantissa = (bits & self.int(0x007f_ffff)) | self.int(0x3f80_0000);
         let exponent = self.to_real(bits.right(23)) - self.real(127.0);
         (mantissa.bitcast(), exponent)
-    }
-    #[inline(always)]
-    fn power_of_two(self, e: Self::Real) -> Self::Real {
-        (self.truncate(e + self.real(127.0)) << 23).bitcast()
     }
 }

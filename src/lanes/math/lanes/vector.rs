@@ -1,4 +1,4 @@
-//! What vectors of both precisions have in common.
+//! The implementation that vectors of both precisions share.
 
 use fearless_simd::prelude::*;
 use fearless_simd::{u8x16, u8x64};
@@ -65,6 +65,7 @@ macro_rules! lanes {
         methods! {
             fn instructions(self) -> Instructions = Instructions::of(self.0.level());
             fn narrow(self) -> Self = self;
+            fn vectorize<R>(self, f: impl FnOnce() -> R) -> R = self.0.vectorize(f);
             fn real(self, x: f64) -> Self::Real = $real::splat(self.0, x as $scalar);
             fn splat(self, x: $scalar) -> Self::Real = $real::splat(self.0, x);
             fn mask(self, x: bool) -> Self::Mask = $mask::splat(self.0, x);
@@ -73,24 +74,16 @@ macro_rules! lanes {
             fn store(self, x: Self::Real, to: &mut [$scalar]) -> () = x.store_slice(&mut to[..$count]);
             fn lane(self, x: Self::Real, i: usize) -> $scalar = x[i & ($count - 1)];
             fn select(self, m: Self::Mask, a: Self::Real, b: Self::Real) -> Self::Real = m.select(a, b);
+            fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [$scalar]) -> () =
+                self.store(x.compress(keep), to);
+            fn compress_int_into(self, x: Self::Int, keep: Self::Mask, to: &mut [u32]) -> () =
+                self.store_int(x.compress(keep), to);
             fn select_int(self, m: Self::Mask, a: Self::Int, b: Self::Int) -> Self::Int = m.select(a, b);
-        }
-        #[inline(always)]
-        fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
-            self.0.vectorize(f)
         }
         #[inline(always)]
         fn with_lane(self, mut x: Self::Real, i: usize, value: $scalar) -> Self::Real {
             x[i & ($count - 1)] = value;
             x
-        }
-        #[inline(always)]
-        fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [$scalar]) {
-            self.store(x.compress(keep), to);
-        }
-        #[inline(always)]
-        fn compress_int_into(self, x: Self::Int, keep: Self::Mask, to: &mut [u32]) {
-            self.store_int(x.compress(keep), to);
         }
     };
 }

@@ -93,7 +93,7 @@ impl<'a, L: DoubleLanes> Along<'a, L> {
         let l = self.lanes;
         let s = Interval::new(l, l.load(from), l.load(to));
         let coordinates = [self.jet(0, &s), self.jet(1, &s), self.jet(2, &s)];
-        let (jet, domain) = self.program.jet(l, &coordinates, &mut self.jets);
+        let (jet, domain) = self.program.value(l, &coordinates, &mut self.jets);
         l.store(jet.value.low, &mut pieces.value[0][place..]);
         l.store(jet.value.high, &mut pieces.value[1][place..]);
         l.store(jet.slope.low, &mut pieces.slope[0][place..]);

@@ -9,7 +9,7 @@ use std::cell::RefCell;
 
 use glam::DVec3;
 
-use crate::field::evaluate::{Field, Scratch, each};
+use crate::field::evaluate::{Field, each};
 use crate::field::normal;
 use crate::math::affine::Affine;
 use crate::math::instructions::Instructions;
@@ -231,9 +231,9 @@ impl<T: Scalar> LaneImplicit<T> {
             if !clipped.any() {
                 return (near, found);
             }
-            let mut scratch = Scratch::<L, 1>::default();
+            let mut scratch = Vec::<[L::Real; 1]>::new();
             let mut value = inlined!(|p| self.field.values(l, [p], &mut scratch)[0]);
-            let mut scratch = Scratch::<L, STRIDE>::default();
+            let mut scratch = Vec::<[L::Real; STRIDE]>::new();
             let step = (far - near) * l.real(1.0 / f64::from(self.steps));
             let mut negative = value(o.along(d, near)).lt(zero);
             // On the surface the field's sign at the start is rounding noise, its sign after it known.

@@ -9,8 +9,7 @@ use super::Certified;
 use crate::field::program::{Program, Whole};
 use crate::math::exact::Exact;
 use crate::math::number::{Number, power_of_two};
-use crate::root::exact::{ExactRoot, Point, Stretch, first_root};
-use crate::root::sharpen::sharpened;
+use crate::root::exact::{ExactRoot, Point, Stretch, first_root, sharpened};
 use crate::shape::Ray;
 use crate::shape::ladder::ScaledRay;
 
