@@ -11,7 +11,6 @@ use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::number::Number;
 use crate::math::vec3::Vec3;
 
-/// The surface of [-1, 1]³.
 pub struct Cube;
 
 impl Canonical for Cube {
@@ -100,7 +99,7 @@ fn slabs<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> [Lan
     [slab(0), slab(1), slab(2)]
 }
 
-/// The same where some line may run along a slab.
+/// The span where some line may run along a slab.
 #[cold]
 #[inline(never)]
 fn with_parallels<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> LaneSpan<L> {

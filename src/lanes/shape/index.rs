@@ -1,4 +1,4 @@
-//! Many objects for single rays: which of them a ray may meet.
+//! Which of many objects a single ray may meet.
 
 use super::hierarchy::{Bounds, BoxRay, Child, Descent, Hierarchy, Item};
 use crate::math::ray::Ray;
@@ -22,7 +22,7 @@ impl RayIndex {
                 None => unbounded.push(object),
             }
         }
-        // Without their shapes no objects are balls to be asked together.
+        // Without shapes no objects are grouped as balls.
         let boxes = Hierarchy::new(&items, &[]);
         Self { boxes, unbounded }
     }

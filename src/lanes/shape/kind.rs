@@ -1,4 +1,4 @@
-//! What a canonical shape is and can, and the list of them.
+//! The contract of canonical shapes, and their list.
 
 use glam::DVec3;
 
@@ -31,7 +31,7 @@ pub struct Length {
     pub each: bool,
     /// Half the extent over the length: 1 for a radius, ½ for an edge.
     pub share: f64,
-    /// What is meant where it is left out; `None` for another way to say what an earlier one says.
+    /// The value where the key is left out; `None` for a key that replaces an earlier one.
     pub default: Option<f64>,
 }
 
@@ -59,14 +59,14 @@ impl Length {
     }
 }
 
-/// The lines that a shape is asked about in lanes.
+/// Rays in lanes that are tested against a shape.
 #[derive(Clone, Copy)]
 pub struct LaneQuestion<'a, L: Lanes> {
     pub shape: &'a LaneShape<L::Scalar>,
     pub ray: &'a LaneRay<L>,
     /// Lanes whose answer counts.
     pub asked: L::Mask,
-    /// A shape that lies beyond this as a whole may be called missed.
+    /// A shape of which all lies beyond this may be called missed.
     pub limit: L::Real,
 }
 
@@ -97,8 +97,8 @@ pub trait Canonical {
     /// Where the line enters and leaves it: `None` where this kind of number cannot tell.
     fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>>;
 
-    /// The same in lanes, with bounds; lanes that these cannot decide are taken to the ladder. What is
-    /// said of lanes that are not asked means nothing.
+    /// [`Self::span`] in lanes, with error bounds; lanes that these cannot decide are taken to the
+    /// ladder. Meaningless in lanes that are not asked.
     fn lane_span<L: Lanes>(l: L, question: &LaneQuestion<'_, L>) -> LaneSpan<L>;
 
     /// The parts, in the order in which [`LaneSpan`] numbers them.
@@ -111,7 +111,7 @@ pub trait Canonical {
         0
     }
 
-    /// What a hit near the world point p looks like, for parts of the kind
+    /// The surface at a hit near the world point p, for parts of the kind
     /// [`PartKind::Other`](super::lanes::part::PartKind::Other).
     #[inline(always)]
     fn surface<L: Lanes>(_l: L, _shape: &LaneShape<L::Scalar>, p: Vec3<L::Real>) -> LaneSurface<L> {
@@ -237,7 +237,7 @@ impl<T: Scalar> LaneShape<T> {
         of!(kind, lane_span(l, &question))
     }
 
-    /// The same by a call: one copy of code for all who ask single objects.
+    /// [`Self::span`] by a call: one copy of its code for all callers that test single objects.
     #[inline(never)]
     pub fn span_by_call<L: Lanes<Scalar = T>>(
         &self,

@@ -1,4 +1,4 @@
-//! The questions asked on the ladder.
+//! The question that rays ask on the ladder.
 
 use super::ladder::{Question, ScaledRay};
 use super::line::{Crossing, Fraction, LocalRay};
@@ -7,9 +7,9 @@ use crate::math::number::Number;
 
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
-    /// Crossings must come after this …
+    /// Crossings must come after this.
     pub t_min: f64,
-    /// … or at it.
+    /// Crossings at `t_min` count too.
     pub inclusive: bool,
     /// Crossings must come before this.
     pub t_max: Option<f64>,
@@ -26,7 +26,7 @@ impl Limits {
     }
 }
 
-/// Which crossing within the limits comes first?
+/// Which crossing within the limits comes first; its answer is `None` where there is none.
 pub struct FirstCrossing<'a> {
     pub kind: ShapeKind,
     /// The ray in the world, for the units of t.
