@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::kind::{Canonical, Emitter, LaneQuestion, Length};
 use super::lanes::{LaneShape, LaneSpan, LaneSurface};
-use super::line::{Crossing, Fraction, LocalRay, Span};
+use super::line::{Fraction, LocalRay, Span};
 use super::slab::{LaneSlab, Slab, cut, reach, slab};
 use super::sphere::round_span;
 use crate::math::lanes::{Lanes, Mask, Real};
@@ -36,10 +36,7 @@ impl Canonical for Cylinder {
         if ray.discriminant(2, &a).sign()? == Ordering::Less {
             return Some(None);
         }
-        let side = Span {
-            near: Crossing::round(2, false),
-            far: Crossing::round(2, true),
-        };
+        let side = Span::round(2);
         match slab(ray, 2)? {
             Slab::Crossed(caps) => cut(ray, side, &caps),
             Slab::Inside => Some(Some(side)),

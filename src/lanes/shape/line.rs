@@ -73,6 +73,17 @@ pub struct Span {
     pub far: Crossing,
 }
 
+impl Span {
+    /// The crossings with the unit quadric of the first `dimensions` coordinates.
+    pub fn round(dimensions: usize) -> Self {
+        let [near, far] = [false, true].map(|leaving| Crossing {
+            feature: Feature::Round { dimensions },
+            leaving,
+        });
+        Self { near, far }
+    }
+}
+
 /// a t² + 2 b t + c, the radial form of a quadric along the line, with disc = b² − a c.
 #[derive(Debug, Clone)]
 pub struct Quadratic<N> {
@@ -159,14 +170,6 @@ impl Crossing {
     pub fn face(axis: usize, positive: bool, leaving: bool) -> Self {
         Self {
             feature: Feature::Face { axis, positive },
-            leaving,
-        }
-    }
-
-    /// The crossing with the first `dimensions` coordinates' unit quadric.
-    pub fn round(dimensions: usize, leaving: bool) -> Self {
-        Self {
-            feature: Feature::Round { dimensions },
             leaving,
         }
     }

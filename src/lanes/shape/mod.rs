@@ -22,7 +22,6 @@ pub mod line;
 pub mod list;
 pub mod placed;
 pub mod plane;
-pub mod question;
 pub mod rectangle;
 pub mod resolve;
 pub mod slab;

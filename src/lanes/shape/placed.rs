@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use super::ladder::{Ladder, ScaledRay};
 use super::line::Crossing;
-use super::question::{FirstCrossing, Limits};
+use super::list::{FirstCrossing, Limits};
 use super::surd::Surd;
 use super::value;
 use super::{Hit, Query, Ray, ShapeKind, Start, Tally, Tier};

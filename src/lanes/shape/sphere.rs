@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::kind::{Canonical, Emitter, LaneQuestion, Length};
 use super::lanes::part::{Part, PartKind};
 use super::lanes::{Enclosure, LaneRay, LaneShape, LaneSpan, LaneSurface};
-use super::line::{Crossing, LocalRay, Span};
+use super::line::{LocalRay, Span};
 use crate::math::affine::Affine;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::number::{Number, dot};
@@ -29,10 +29,7 @@ impl Canonical for Sphere {
     fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
         let a = dot(&ray.direction, &ray.direction);
         let meets = ray.discriminant(3, &a).sign()? != Ordering::Less;
-        Some(meets.then(|| Span {
-            near: Crossing::round(3, false),
-            far: Crossing::round(3, true),
-        }))
+        Some(meets.then(|| Span::round(3)))
     }
 
     #[inline(always)]
@@ -43,13 +40,17 @@ impl Canonical for Sphere {
             asked,
             limit,
         } = *question;
-        match &shape.ball {
-            Some(ball) => {
-                let value = inlined!(|x: &L::Scalar| l.splat(*x));
-                ball_span(l, ball, value, ray, asked, limit)
-            }
-            None => ellipsoid_span(l, shape, ray),
+        if let Some(ball) = &shape.ball {
+            let value = inlined!(|x: &L::Scalar| l.splat(*x));
+            return ball_span(l, ball, value, ray, asked, limit);
         }
+        let o = shape.inverse.point(l, ray.origin);
+        let d = shape.inverse.vector(l, ray.direction);
+        let inverse_square = l.real(1.0) / d.length_squared();
+        let foot_t = -(o.dot(d) * inverse_square);
+        let squared = o.along(d, foot_t).length_squared();
+        let errors = shape.largest_errors(l, ray, 3);
+        round_span(l, foot_t, squared, inverse_square.sqrt(), errors)
     }
 
     fn parts<T: Scalar>(shape: &LaneShape<T>) -> Vec<Part<T>> {
@@ -176,17 +177,6 @@ pub fn round_span<L: Lanes>(
         miss: c.lt(-c_error),
         parts: [l.int(0); 2],
     }
-}
-
-#[inline(always)]
-fn ellipsoid_span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> LaneSpan<L> {
-    let o = shape.inverse.point(l, ray.origin);
-    let d = shape.inverse.vector(l, ray.direction);
-    let inverse_square = l.real(1.0) / d.length_squared();
-    let foot_t = -(o.dot(d) * inverse_square);
-    let squared = o.along(d, foot_t).length_squared();
-    let errors = shape.largest_errors(l, ray, 3);
-    round_span(l, foot_t, squared, inverse_square.sqrt(), errors)
 }
 
 /// Where lines meet balls; `value` takes each lane's number from a column. Packets that surely pass

@@ -22,7 +22,6 @@ use crate::math::packet::each;
 use crate::math::words::{Pair, Plain, Row};
 use crate::root::exact::ExactRoot;
 use crate::shape::{Ray, Tier};
-use exact::ExactStart;
 
 /// Lanes of a packet.
 pub const WIDTH: usize = 8;
@@ -197,7 +196,7 @@ impl Certified {
 
     /// The first hit of a ray by exact arithmetic alone, as the truth that others are judged by.
     pub fn exactly(&self, ray: &Ray, limits: [f64; 2]) -> Option<ExactRoot> {
-        exact::first_hit(self, ray, limits, ExactStart::Free, f64::NAN)
+        exact::first_hit(self, ray, limits, None, f64::NAN)
     }
 
     fn in_lanes(
@@ -287,11 +286,7 @@ impl Certified {
     #[cold]
     fn decide(&self, packet: &Packet, lane: usize, answers: &mut Answers) {
         let ray = packet.ray(lane);
-        let start = if packet.leaving >> lane & 1 == 1 {
-            ExactStart::OnSurface(packet.roundoff)
-        } else {
-            ExactStart::Free
-        };
+        let start = (packet.leaving >> lane & 1 == 1).then_some(packet.roundoff);
         let limits = [packet.t_min[lane], packet.t_max[lane]];
         let bit = 1 << lane;
         match exact::first_hit(self, &ray, limits, start, answers.doubt[lane]) {

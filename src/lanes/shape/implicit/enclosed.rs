@@ -289,43 +289,33 @@ impl EnclosedPacket {
     pub fn first_hits(&self, instructions: Instructions, packet: &Packet) -> Answers {
         let mut answers = Answers::default();
         for lane in each(packet.active) {
-            self.answer(instructions, packet, lane, &mut answers);
-        }
-        answers
-    }
-
-    fn answer(
-        &self,
-        instructions: Instructions,
-        packet: &Packet,
-        lane: usize,
-        answers: &mut Answers,
-    ) {
-        let ray = packet.ray(lane);
-        let leaving = packet.leaving >> lane & 1 == 1;
-        // The point of a hit is rounded some times (distance, product, sum, the way back): 2³
-        // units of its largest coordinate, and as much again for the way there.
-        let extent = ray.origin.abs().max_element();
-        let shift = 16.0 * packet.roundoff * extent * self.largest_row;
-        let searching = Searching {
-            instructions,
-            method: self.method,
-            bound: WORK_BOUND,
-            leaving: leaving.then_some(shift),
-        };
-        let bit = 1 << lane;
-        match self.first_hit(&ray, [packet.t_min[lane], packet.t_max[lane]], &searching) {
-            Outcome::Undecided => {}
-            Outcome::Absent => answers.absent |= bit,
-            Outcome::Found(root) => {
-                let [low, high] = root.enclosure;
-                answers.found |= bit;
-                answers.t[lane] = low + 0.5 * (high - low);
-                [answers.low[lane], answers.high[lane]] = [low, high];
-                answers.multiplicity[lane] = root.multiplicity.unwrap_or(0);
-                answers.tiers[lane] = Tier::Double;
+            let ray = packet.ray(lane);
+            // The point of a hit is rounded some times (distance, product, sum, the way back): 2³
+            // units of its largest coordinate, and as much again for the way there.
+            let extent = ray.origin.abs().max_element();
+            let shift = 16.0 * packet.roundoff * extent * self.largest_row;
+            let leaving = packet.leaving >> lane & 1 == 1;
+            let searching = Searching {
+                instructions,
+                method: self.method,
+                bound: WORK_BOUND,
+                leaving: leaving.then_some(shift),
+            };
+            let bit = 1 << lane;
+            match self.first_hit(&ray, [packet.t_min[lane], packet.t_max[lane]], &searching) {
+                Outcome::Undecided => {}
+                Outcome::Absent => answers.absent |= bit,
+                Outcome::Found(root) => {
+                    let [low, high] = root.enclosure;
+                    answers.found |= bit;
+                    answers.t[lane] = low + 0.5 * (high - low);
+                    [answers.low[lane], answers.high[lane]] = [low, high];
+                    answers.multiplicity[lane] = root.multiplicity.unwrap_or(0);
+                    answers.tiers[lane] = Tier::Double;
+                }
             }
         }
+        answers
     }
 
     /// The first hit of a world ray, t in units of its direction.

@@ -21,13 +21,6 @@ struct IntegerRay {
     scale: BigInt,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum ExactStart {
-    Free,
-    /// A point of the surface, rounded with this unit roundoff.
-    OnSurface(f64),
-}
-
 impl IntegerRay {
     /// The common power of two is of no concern. t is in units of the scaled direction.
     fn new(placed: &Certified, ray: &ScaledRay) -> Self {
@@ -100,13 +93,13 @@ impl IntegerRay {
     }
 }
 
-/// The first hit of a ray, with its multiplicity, perhaps near the hint; t in units of the
-/// direction.
+/// The first hit of a ray, with its multiplicity, perhaps near the hint; t in units of the direction.
+/// A ray that leaves the surface starts at a point that was rounded with `start_roundoff`.
 pub(super) fn first_hit(
     placed: &Certified,
     ray: &Ray,
     limits: [f64; 2],
-    start: ExactStart,
+    start_roundoff: Option<f64>,
     hint: f64,
 ) -> Option<ExactRoot> {
     if !ray.is_valid() || limits[0].is_nan() || limits[1].is_nan() {
@@ -123,7 +116,7 @@ pub(super) fn first_hit(
         let mut coefficients = factor
             .program
             .powers(&line.coordinates, &line.scale, degree)?;
-        if let ExactStart::OnSurface(roundoff) = start
+        if let Some(roundoff) = start_roundoff
             && is_start(&coefficients, roundoff)
         {
             coefficients = beyond_start(coefficients);
