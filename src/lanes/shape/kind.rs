@@ -9,10 +9,10 @@ use crate::math::lanes::{Lanes, Scalar};
 use crate::math::number::Number;
 use crate::math::vec3::Vec3;
 
-/// How points are chosen on a shape that emits.
+/// How points are sampled on a shape that emits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Emitter {
-    /// They are not: scattered rays alone find the light.
+    /// Not at all: scattered rays alone find the light.
     Unsampled,
     Disk,
     Rectangle,
@@ -76,14 +76,14 @@ pub trait Canonical {
     const LENGTHS: &'static [Length] = &[];
     /// Whether scene files may say where its centre is, by the key `center`.
     const CENTERED: bool = false;
-    /// Whether it is a piece of the plane z = 0, with +z as its front; else it is closed.
+    /// Whether it is a piece of the plane z = 0, with +z as its front; else it is the surface of a body.
     const FLAT: bool = false;
-    /// Whether a ray that leaves it outward never comes back, so that it need not be asked again.
+    /// Whether a ray that leaves it outward never meets it again, so that it need not be tested.
     const CONVEX: bool = true;
     const EMITTER: Emitter = Emitter::Unsampled;
     /// Its parallel faces, as (canonical axis, places on it).
     const FACES: &'static [(usize, &'static [f64])] = &[];
-    /// How many of its coordinates a round wall of radius 1 is about.
+    /// The number of coordinates in Σx² = 1, for a round wall.
     const ROUND: Option<usize> = None;
 
     /// Opposite corners of its box; `None` where it has no end.

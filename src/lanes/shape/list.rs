@@ -84,9 +84,9 @@ struct ObjectCrossing<'a> {
     t: Bounded,
 }
 
-/// The closest hit over some objects with their indices, with its object's index. Equal t is
-/// recognised exactly; then the lower `priority` of the index wins, then the lower index. `start`
-/// says of each object what is known of the origin.
+/// The closest hit on objects that come with their indices, and its object's index. Equal t is
+/// recognised exactly; then the lower `priority` wins, then the lower index. `start` says what is known
+/// of the origin by object.
 pub fn nearest<'a>(
     objects: impl Iterator<Item = (usize, &'a Placed)>,
     query: &Query,
@@ -129,7 +129,7 @@ pub fn nearest<'a>(
     Some((best.index, hit))
 }
 
-/// Whether any of some objects with their indices has a crossing strictly between `t_min` and `t_max`.
+/// Whether any of the objects has a crossing strictly between `t_min` and `t_max`.
 pub fn occluded<'a>(
     mut objects: impl Iterator<Item = (usize, &'a Placed)>,
     query: &Query,

@@ -23,11 +23,11 @@ use crate::shape::ladder::{Ladder, ScaledRay};
 use crate::shape::line::LocalRay;
 use crate::shape::{Ray, SingularMatrix, Tier};
 
-/// Most evaluations for one ray: well above what separated zeros need (some tens), and about a
+/// Most evaluations for one ray: well above what separated zeros take (some tens), and about a
 /// millisecond for a field of a dozen operations.
 pub const WORK_BOUND: u32 = 2_000;
 
-/// A field made ready for interval subdivision, as its factors.
+/// The factors of a field, as interval programs.
 #[derive(Debug, Clone)]
 pub struct EnclosedField {
     factors: Vec<EnclosedFactor>,
@@ -66,8 +66,8 @@ impl EnclosedField {
         Self { factors }
     }
 
-    /// With bounds of the factors' gradients over a box, which sphere tracing can use besides
-    /// those along the ray. The bound of a product is none of its factors.
+    /// With bounds of the factors' gradients over a box, which sphere tracing can use besides those along
+    /// the ray.
     pub fn surveyed(mut self, inside: &[DVec3; 2]) -> Self {
         for factor in &mut self.factors {
             factor.steepness = survey(Instructions::best(), &factor.program, inside).steepness;
@@ -96,13 +96,13 @@ impl EnclosedField {
 
 #[derive(Debug, Clone, Copy)]
 pub struct Searching {
-    /// In which instructions; the zeros are the same with each.
+    /// The zeros are the same with each.
     pub instructions: Instructions,
     pub method: Method,
     /// Most evaluations for each factor.
     pub bound: u32,
-    /// For a ray that leaves this very surface at t = 0: how far each local coordinate of its
-    /// start may be from the true hit's. The zero there does not count.
+    /// For a ray that leaves this surface at t = 0, where the zero does not count: how far each local
+    /// coordinate of its start may be from the exact hit's.
     pub leaving: Option<f64>,
 }
 
@@ -209,8 +209,7 @@ fn point(x: f64) -> ScalarInterval {
     ScalarInterval::point(One, x)
 }
 
-/// The earlier of the first zeros of two factors; which it is stays open where the enclosures
-/// overlap.
+/// The earlier of the first zeros of two factors; where the enclosures overlap, what holds for both.
 fn earlier(a: &Root, b: &Root) -> Root {
     if a.enclosure[1] < b.enclosure[0] {
         return *a;
@@ -266,7 +265,7 @@ impl EnclosedPacket {
         method: Method,
     ) -> Result<Self, SingularMatrix> {
         let ladder = Ladder::new(to_world)?;
-        // Two sums and three roundings of entries: half of this pays for them.
+        // Entries rounded by ½ε and two sums are off by 1.5ε; 8ε leave room.
         let row = |row: &[DoubleDouble; 4]| {
             let sizes = row[..3].iter().map(|x| x.to_f64().abs());
             sizes.sum::<f64>() * (1.0 + 8.0 * f64::EPSILON)
@@ -290,8 +289,8 @@ impl EnclosedPacket {
         let mut answers = Answers::default();
         for lane in each(packet.active) {
             let ray = packet.ray(lane);
-            // The point of a hit is rounded some times (distance, product, sum, the way back): 2³
-            // units of its largest coordinate, and as much again for the way there.
+            // Up to 2³ roundings of the largest coordinate on the way to the point of a hit (distance,
+            // product, sum, map), and as many on the way back.
             let extent = ray.origin.abs().max_element();
             let shift = 16.0 * packet.roundoff * extent * self.largest_row;
             let leaving = packet.leaving >> lane & 1 == 1;

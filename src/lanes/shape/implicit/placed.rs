@@ -1,4 +1,4 @@
-//! An implicit surface in the world and a ray's first hit with it, by the finder of its choice.
+//! An implicit surface placed in the world, and a ray's first hit with it by the surface's finder.
 
 pub use super::baseline::ImplicitHit;
 use super::baseline::SteppingFinder;
@@ -12,7 +12,6 @@ use glam::DVec3;
 
 #[derive(Debug, Clone)]
 pub enum Finder {
-    /// Equal steps and bisection: proves nothing.
     SignChange,
     Polynomial {
         certified: Box<Certified>,
@@ -50,8 +49,8 @@ impl Finder {
         }
     }
 
-    /// The first hits of a packet; `None` from the finder that proves nothing. `sharp` asks for
-    /// narrow enclosures where they cost more.
+    /// The first hits of a packet; `None` from [`Self::SignChange`], which proves nothing. `sharp` asks
+    /// for narrow enclosures at a higher cost.
     pub fn first_hits(
         &self,
         packet: &Packet,
@@ -132,7 +131,7 @@ impl PlacedImplicit {
         }
     }
 
-    /// The same without the normal, which takes longer than all else where it has to be exact.
+    /// [`Self::first_hit`] without the normal, which takes longer than all else where it must be exact.
     pub fn first_crossing(
         &self,
         query: &Query,

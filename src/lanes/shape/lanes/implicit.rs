@@ -1,9 +1,8 @@
 //! Implicit surfaces in lanes.
 //!
-//! Polynomials go to the certified finder, whatever the precision of the loop, in packets of
-//! eight. The baseline finder is the report's own method: equal steps along the clipped ray, a change
-//! of sign, bisection. It proves nothing; a pair of roots within one step is missed. It stays as the
-//! yardstick for certified finders.
+//! Finders that prove their answers work in f64, whatever the precision of the loop, on packets of
+//! eight rays. The finder by changes of sign, in lanes here, is that of
+//! [`baseline`](crate::shape::implicit::baseline).
 
 use std::cell::RefCell;
 
@@ -28,7 +27,7 @@ use crate::field::lanes::{LaneField, Scratch, each};
 #[derive(Debug, Clone)]
 pub struct LaneImplicit<T> {
     field: LaneField<T>,
-    /// The field in f64 and the size of the box, for normals where the gradient vanishes.
+    /// The field in f64 and the largest edge of the box, for normals where the gradient vanishes.
     scalar: Field,
     size: f64,
     centre: [T; 3],
@@ -37,20 +36,20 @@ pub struct LaneImplicit<T> {
     inverse: Rows<T>,
     /// The clip box's image.
     bounds: OuterBox<T>,
-    /// 16 unit roundoffs of a world coordinate of 1, as a length in object coordinates.
+    /// 16u of a world coordinate of 1 (see [`Packet::roundoff`]), as a length in object coordinates.
     rounding: T,
     finder: Finder,
 }
 
 thread_local! {
-    /// Room for the forms of a packet, once a thread.
+    // Room for the polynomials of a packet.
     static WORKSPACE: RefCell<Workspace> = RefCell::default();
 }
 
-/// Steps taken at once: reading a tape costs about as much as three operations of its own.
+/// Steps evaluated together: reading an operation from the tape costs about as much as executing three.
 const STRIDE: usize = 4;
 
-/// What a ray that starts on the surface knows: which sign the field has just after the start.
+/// The sign of the field just after the start, for rays that start on the surface.
 #[derive(Clone, Copy)]
 pub struct StartSign<L: Lanes> {
     /// Lanes that start on this surface.
@@ -59,11 +58,10 @@ pub struct StartSign<L: Lanes> {
     pub inward: L::Mask,
 }
 
-/// Rays that an implicit surface is asked about.
+/// Rays that are tested against an implicit surface.
 #[derive(Clone, Copy)]
 pub struct FieldQuestion<'a, L: Lanes> {
     pub ray: &'a LaneRay<L>,
-    /// What they know of the surface at their start.
     pub start: StartSign<L>,
     /// Hits count before this.
     pub limit: L::Real,
@@ -105,7 +103,7 @@ impl<T: Scalar> LaneImplicit<T> {
     /// The first hits before `limit`; where the mask is false, none is known.
     ///
     /// The ray is clipped to the surface's own box and the hit compared with the limit afterwards, so
-    /// that a hit does not depend, in its last digits, on what else was asked before.
+    /// that a hit's last digits do not depend on what was tested before.
     #[inline(never)]
     pub fn first_hit<L: Lanes<Scalar = T>>(
         &self,
@@ -142,8 +140,8 @@ impl<T: Scalar> LaneImplicit<T> {
     }
 
     /// Outward normals at object points that are met in these directions: the gradient, of any
-    /// length; where it vanishes, the unit normal that [`normal::outward`] finds. And the steps that
-    /// take points onto the surface which lie off it for having come from afar.
+    /// length; where it vanishes, the unit normal that [`normal::outward`] finds. And the steps onto the
+    /// surface, for points that rounding on a long way has put off it.
     ///
     /// A point p = o + t d is off by roundings of |o| and |t d|, at most 16 u `reach` in each coordinate
     /// with u the unit roundoff and `reach` the sum of both (as for the start of a ray, see

@@ -1,4 +1,4 @@
-//! One ray, decided exactly.
+//! The first hit of one ray, decided exactly.
 
 use std::cmp::Ordering;
 
@@ -22,7 +22,7 @@ struct IntegerRay {
 }
 
 impl IntegerRay {
-    /// The common power of two is of no concern. t is in units of the scaled direction.
+    /// With a common power of two left out; t is in units of the scaled direction.
     fn new(placed: &Certified, ray: &ScaledRay) -> Self {
         let line = placed.ladder.exact.local(ray);
         let all = line
@@ -52,7 +52,7 @@ impl IntegerRay {
         let mut stretch = Stretch {
             low: Point::of(t_min),
             low_counts: t_min == 0.0,
-            // Where there is no limit, a face follows: the direction is not zero.
+            // Where there is no limit, a face is: the direction is not zero.
             high: Point::of(f64::MAX),
             high_counts: false,
         };
@@ -197,7 +197,7 @@ pub(super) fn order_of_vanishing(
         *o = &*o * q + &*d * p;
     }
     let mut scale = &line.scale * q;
-    // Powers of two that are common are of no concern.
+    // Common powers of two are left out.
     let shift = trailing(coordinates.iter().map(|[o, _]| o).chain([&scale]));
     scale >>= shift;
     let shift_directions = trailing(coordinates.iter().map(|[_, d]| d));
@@ -264,16 +264,17 @@ fn earlier(a: ExactRoot, b: ExactRoot) -> ExactRoot {
     }
 }
 
-/// Whether the factor is the one whose root the start is: its value is small beside what it is
-/// elsewhere on the line. The start is off by some 2⁴ roundings of coordinates that may be 2¹²
-/// times as large as the object; a factor that is not the one is not as small.
+/// Whether the start is a root of this factor: whether its value is small beside what it is elsewhere on
+/// the line. The start is off by some 2⁴ roundings of coordinates that may be 2¹² times as large as the
+/// object, 16 bits in all.
 fn is_start(coefficients: &[BigInt], roundoff: f64) -> bool {
     let largest = coefficients.iter().skip(1).map(BigInt::bits).max();
     let bits = (1.0 / roundoff).log2() as u64 - 16;
     coefficients[0].bits() + bits < largest.unwrap_or(0)
 }
 
-/// The field less its value at the start, divided by t: the level through the start itself.
+/// The field less its value at the start, divided by t: what is left when the root at the start is
+/// divided out.
 fn beyond_start(coefficients: Vec<BigInt>) -> Vec<BigInt> {
     let mut rest: Vec<BigInt> = coefficients.into_iter().skip(1).collect();
     while rest.len() > 1 && rest[0].is_zero() {
