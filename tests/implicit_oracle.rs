@@ -17,6 +17,7 @@ use etalon::inside::shape::implicit::certified::{
     Answers, Certified, Effort, Packet, WIDTH, Workspace,
 };
 use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitHit, PlacedImplicit};
+use etalon::inside::shape::ladder::Ladder;
 use etalon::inside::shape::{Query, Ray, Tally};
 use etalon::{Instructions, Tier};
 use etalon_doors::shapes::without_bounds;
@@ -42,6 +43,12 @@ fn surfaces() -> BTreeMap<String, Surface> {
         (shape.name, Surface { implicit, half })
     };
     shapes().into_iter().map(surface).collect()
+}
+
+fn certified(surface: &Surface) -> Certified {
+    let Implicit { field, inside, .. } = &surface.implicit;
+    let ladder = Ladder::new(&Affine::IDENTITY).unwrap();
+    Certified::new(&field.tape, *inside, &ladder).unwrap()
 }
 
 fn placed(finder: FinderChoice) -> BTreeMap<String, (PlacedImplicit, f64)> {
@@ -219,11 +226,7 @@ fn second_hits_of_rays_that_leave() {
     };
     let certified: BTreeMap<&String, Certified> = surfaces
         .iter()
-        .map(|(name, surface)| {
-            let Implicit { field, inside, .. } = &surface.implicit;
-            let certified = Certified::new(&field.tape, *inside, &Affine::IDENTITY);
-            (name, certified.unwrap().unwrap())
-        })
+        .map(|(name, surface)| (name, certified(surface)))
         .collect();
     for row in &rows(include_str!("data/bounce.csv")) {
         let ray = first[row["id"].as_str()];
@@ -269,9 +272,7 @@ fn full_packets_agree_with_single_rays() {
     let mut workspaces: Vec<Workspace> = sets.map(Workspace::new).collect();
     let table = rows(IMPLICIT);
     for (name, surface) in &surfaces() {
-        let Implicit { field, inside, .. } = &surface.implicit;
-        let certified = Certified::new(&field.tape, *inside, &Affine::IDENTITY);
-        let certified = certified.unwrap().unwrap();
+        let certified = certified(surface);
         let rays: Vec<&Row> = table.iter().filter(|row| row["shape"] == *name).collect();
         let packet = |rows: &[&Row]| {
             let mut packet = Packet::default();
@@ -316,11 +317,7 @@ fn bounds_of_zero_are_noticed() {
     };
     let finders: BTreeMap<&String, Certified> = surfaces
         .iter()
-        .map(|(name, surface)| {
-            let Implicit { field, inside, .. } = &surface.implicit;
-            let certified = Certified::new(&field.tape, *inside, &Affine::IDENTITY);
-            (name, without_bounds(certified.unwrap().unwrap()))
-        })
+        .map(|(name, surface)| (name, without_bounds(certified(surface))))
         .collect();
     let wrong = rows(IMPLICIT)
         .iter()

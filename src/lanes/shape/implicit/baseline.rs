@@ -23,7 +23,7 @@ pub struct SteppingFinder {
     field: Field,
     inside: [DVec3; 2],
     steps: u32,
-    ladder: Ladder,
+    pub ladder: Ladder,
     to_world: Affine,
 }
 

@@ -9,7 +9,6 @@ use super::clip::{Clipped, clipped};
 use crate::field::interval_program::IntervalProgram;
 use crate::field::over_box::survey;
 use crate::field::tape::Tape;
-use crate::math::affine::Affine;
 use crate::math::double_double::DoubleDouble;
 use crate::math::instructions::{DoubleLanes, Instructions, Job};
 use crate::math::interval::ScalarInterval;
@@ -21,7 +20,7 @@ use crate::root::interval::{self, Search};
 use crate::root::{Outcome, Root, sphere_trace};
 use crate::shape::ladder::{Ladder, ScaledRay};
 use crate::shape::line::LocalRay;
-use crate::shape::{Ray, SingularMatrix, Tier};
+use crate::shape::{Ray, Tier};
 
 /// Most evaluations for one ray: well above what separated zeros take (some tens), and about a
 /// millisecond for a field of a dozen operations.
@@ -257,14 +256,7 @@ pub struct EnclosedPacket {
 }
 
 impl EnclosedPacket {
-    /// # Errors
-    /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
-    pub fn new(
-        implicit: &Implicit,
-        to_world: &Affine,
-        method: Method,
-    ) -> Result<Self, SingularMatrix> {
-        let ladder = Ladder::new(to_world)?;
+    pub fn new(implicit: &Implicit, ladder: &Ladder, method: Method) -> Self {
         // Entries rounded by ½ε and two sums are off by 1.5ε; 8ε leave room.
         let row = |row: &[DoubleDouble; 4]| {
             let sizes = row[..3].iter().map(|x| x.to_f64().abs());
@@ -273,7 +265,7 @@ impl EnclosedPacket {
         let entries = ladder.double_double.inverse();
         let largest_row = entries.iter().map(row).fold(0.0, f64::max);
         let field = EnclosedField::new(&implicit.field.tape);
-        Ok(Self {
+        Self {
             field: match method {
                 Method::Subdivision => field,
                 Method::Spheres => field.surveyed(&implicit.inside),
@@ -281,8 +273,8 @@ impl EnclosedPacket {
             inside: implicit.inside,
             method,
             largest_row,
-            ladder,
-        })
+            ladder: ladder.clone(),
+        }
     }
 
     pub fn first_hits(&self, instructions: Instructions, packet: &Packet) -> Answers {

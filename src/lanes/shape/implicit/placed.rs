@@ -6,6 +6,7 @@ use super::certified::{Answers, Certified, Effort, Packet, Workspace};
 use super::enclosed::{EnclosedPacket, Method};
 use crate::math::affine::Affine;
 use crate::shape::implicit::{FinderChoice, Implicit};
+use crate::shape::ladder::Ladder;
 use crate::shape::{Query, Ray, SingularMatrix, Tally};
 
 use glam::DVec3;
@@ -25,26 +26,23 @@ pub enum Finder {
 impl Finder {
     /// The finder that a surface asks for; `auto` is certified isolation for polynomials, and
     /// interval subdivision for other fields.
-    ///
-    /// # Errors
-    /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
-    pub fn new(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
+    pub fn new(implicit: &Implicit, ladder: &Ladder) -> Self {
         let enclosed = |method| {
-            let placed = EnclosedPacket::new(implicit, to_world, method)?;
-            Ok(Self::Enclosed(Box::new(placed)))
+            let placed = EnclosedPacket::new(implicit, ladder, method);
+            Self::Enclosed(Box::new(placed))
         };
         let exact = match implicit.finder {
             FinderChoice::Auto => true,
             FinderChoice::Polynomial => false,
-            FinderChoice::SignChange => return Ok(Self::SignChange),
+            FinderChoice::SignChange => return Self::SignChange,
             FinderChoice::Interval => return enclosed(Method::Subdivision),
             FinderChoice::SphereTrace => return enclosed(Method::Spheres),
         };
-        match Certified::new(&implicit.field.tape, implicit.inside, to_world)? {
-            Some(certified) => Ok(Self::Polynomial {
+        match Certified::new(&implicit.field.tape, implicit.inside, ladder) {
+            Some(certified) => Self::Polynomial {
                 certified: Box::new(certified),
                 exact,
-            }),
+            },
             None => enclosed(Method::Subdivision),
         }
     }
@@ -102,9 +100,10 @@ impl PlacedImplicit {
     /// # Errors
     /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
     pub fn new(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
+        let stepping = SteppingFinder::new(implicit, to_world)?;
         Ok(Self {
-            stepping: SteppingFinder::new(implicit, to_world)?,
-            finder: Finder::new(implicit, to_world)?,
+            finder: Finder::new(implicit, &stepping.ladder),
+            stepping,
         })
     }
 

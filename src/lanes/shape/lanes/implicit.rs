@@ -19,6 +19,7 @@ use crate::shape::hierarchy::{Bounds, OuterBox};
 use crate::shape::implicit::Implicit;
 use crate::shape::implicit::certified::{Packet, WIDTH, Workspace};
 use crate::shape::implicit::placed::Finder;
+use crate::shape::ladder::Ladder;
 use crate::shape::{SingularMatrix, Tally};
 
 use super::LaneRay;
@@ -92,7 +93,7 @@ impl<T: Scalar> LaneImplicit<T> {
             inverse: Rows::from_f64(&inverse.rows),
             bounds: OuterBox::new(&Bounds::around_image(to_world, inside[0], inside[1])),
             rounding: T::from_f64(16.0 * T::ROUNDOFF * largest_row),
-            finder: Finder::new(implicit, to_world)?,
+            finder: Finder::new(implicit, &Ladder::new(to_world)?),
         })
     }
 

@@ -26,6 +26,7 @@ use etalon::inside::scene::{FinderChoice, Implicit};
 use etalon::inside::shape::Query;
 use etalon::inside::shape::implicit::baseline::SteppingFinder;
 use etalon::inside::shape::implicit::certified::{Certified, Effort, Packet, WIDTH, Workspace};
+use etalon::inside::shape::ladder::Ladder;
 use etalon::inside::shape::lanes::implicit::LaneImplicit;
 use etalon_doors::shapes::sign_changes;
 use etalon_method::finders::{CLASSES, Oracle};
@@ -70,10 +71,10 @@ impl Surface {
             steps: 256,
         };
         let (tape, inside) = (&implicit.field.tape, implicit.inside);
-        let placed = Certified::new(tape, inside, &Affine::IDENTITY).unwrap();
+        let ladder = Ladder::new(&Affine::IDENTITY).unwrap();
         Self {
             degree: implicit.field.polynomial.as_ref().unwrap().degree(),
-            certified: placed.unwrap(),
+            certified: Certified::new(tape, inside, &ladder).unwrap(),
             stepping: LaneImplicit::new(&implicit, &Affine::IDENTITY, &Affine::IDENTITY).unwrap(),
             scalar: SteppingFinder::new(&implicit, &Affine::IDENTITY).unwrap(),
             yardstick: Yardstick::new(tape, half),

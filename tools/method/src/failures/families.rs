@@ -13,6 +13,7 @@ use etalon::inside::field::named;
 use etalon::inside::math::affine::Affine;
 use etalon::inside::scene::{FinderChoice, Implicit};
 use etalon::inside::shape::implicit::certified::Certified;
+use etalon::inside::shape::ladder::Ladder;
 use etalon::inside::shape::{Ray, ShapeKind};
 
 /// What makes rays hard.
@@ -333,7 +334,11 @@ fn bodies(
 ) -> Option<Vec<Body>> {
     if let Some(model) = model {
         let implicit = model.implicit();
-        let certified = Certified::new(&implicit.field.tape, implicit.inside, to_world).ok()??;
+        let certified = Certified::new(
+            &implicit.field.tape,
+            implicit.inside,
+            &Ladder::new(to_world).ok()?,
+        )?;
         return Some(vec![Body {
             to_world: *to_world,
             kind: None,

@@ -6,12 +6,10 @@ use crate::field::outer::outer_box;
 use crate::field::program::Program;
 use crate::field::program::bounds::{Bound, PLAIN, Rounding, binomial, bounds};
 use crate::field::tape::Tape;
-use crate::math::affine::Affine;
 use crate::math::double_double::DoubleDouble;
 use crate::math::exact::Exact;
 use crate::math::number::Number;
 use crate::root::bernstein::{DEGREES, split_error};
-use crate::shape::SingularMatrix;
 use crate::shape::ladder::Ladder;
 
 /// Double-double in lanes, see [`crate::math::words::Pair`].
@@ -74,28 +72,17 @@ const MARGIN: f64 = 1.0 / 1024.0;
 impl Certified {
     /// Places the zeros of a field within a clip box; `None` where the field is no polynomial, or
     /// one that is too large.
-    ///
-    /// # Errors
-    /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
-    pub fn new(
-        field: &Tape,
-        clip: [DVec3; 2],
-        to_world: &Affine,
-    ) -> Result<Option<Self>, SingularMatrix> {
+    pub fn new(field: &Tape, clip: [DVec3; 2], ladder: &Ladder) -> Option<Self> {
         let factors = field.factors().factors;
         let programs = factors
             .iter()
             .map(|f| Some((Program::new(&f.tape, &DEGREES)?, f.multiplicity)));
-        let Some(programs) = programs.collect::<Option<Vec<_>>>() else {
-            return Ok(None);
-        };
+        let mut programs = programs.collect::<Option<Vec<_>>>()?;
         let tapes: Vec<Tape> = factors.into_iter().map(|f| f.tape).collect();
         let whole = outer_box(&tapes, clip);
-        let programs = if whole.is_some() {
-            programs
-        } else {
-            Vec::new()
-        };
+        if whole.is_none() {
+            programs.clear();
+        }
         let outer = whole.unwrap_or(clip);
         let margin = MARGIN * ((outer[1] - outer[0]) / 2.0).max_element().max(0.0);
         let farthest = outer[0].abs().max(outer[1].abs());
@@ -105,22 +92,21 @@ impl Certified {
             DVec3::select(is_free, DVec3::splat(free), clip[i])
         });
         let is_cut = cut.iter().any(|corner| corner.is_finite_mask().any());
-        let ladder = Ladder::new(to_world)?;
         let factors = programs
             .into_iter()
             .map(|(program, power)| FactorField::new(program, power, reach))
             .collect();
-        Ok(Some(Self {
+        Some(Self {
             factors,
-            inverse: [Inverse::plain(&ladder), Inverse::pair(&ladder)],
-            ladder,
+            inverse: [Inverse::plain(ladder), Inverse::pair(ladder)],
+            ladder: ladder.clone(),
             clip: clip.map(|corner| corner.to_array()),
             outer: outer.map(|corner| corner.to_array()),
             farthest: farthest.max_element(),
             cut: cut.map(|corner| corner.to_array()),
             is_cut,
             margin,
-        }))
+        })
     }
 
     /// Largest number of coefficients of a factor's forms.
