@@ -18,7 +18,6 @@ use crate::math::scalar_lane::One;
 use crate::math::vec3::Vec3;
 use split::split;
 
-/// Children of a node.
 pub const WIDTH: usize = MOST;
 /// Levels whose nodes are split at the lowest cost; deeper nodes, which only unusual scenes have, are
 /// halved.

@@ -76,7 +76,6 @@ impl<N: Number> Frame<N> {
         }
     }
 
-    /// The inverse map's 3×4 matrix.
     pub fn inverse(&self) -> [[N; 4]; 3] {
         self.adjugate.each_ref().map(|row| {
             let entry = |j: usize| row[j].divided_by(&self.scale);
@@ -146,6 +145,14 @@ impl Ladder {
             double_double: Frame::enclosing(&exact),
             exact,
         })
+    }
+
+    /// World → canonical coordinates, every entry computed in double-double and rounded once.
+    pub fn inverse(&self) -> Affine {
+        let entries = self.double_double.inverse();
+        Affine {
+            rows: entries.map(|row| row.map(|entry| entry.to_f64())),
+        }
     }
 
     /// The first answer on the way up, and the tier that gave it. Exact numbers always answer, so that

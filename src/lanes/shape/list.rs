@@ -75,7 +75,6 @@ impl Question for FirstCrossing<'_> {
     }
 }
 
-/// The first crossing with an object.
 struct ObjectCrossing<'a> {
     index: usize,
     object: &'a Placed,

@@ -74,7 +74,6 @@ impl Shape {
 /// What is known of a ray's start beyond its rounded coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Start {
-    /// Nothing.
     #[default]
     Free,
     /// The origin stands for a point of this surface, and the ray goes inward: the entering crossing is

@@ -63,14 +63,6 @@ impl Placed {
         self.hit(&crossing, &ray, tier)
     }
 
-    /// World → canonical coordinates, every entry computed in double-double and rounded once.
-    pub fn inverse(&self) -> Affine {
-        let entries = self.ladder.double_double.inverse();
-        Affine {
-            rows: entries.map(|row| row.map(|entry| entry.to_f64())),
-        }
-    }
-
     pub(super) fn first_crossing(
         &self,
         ray: &ScaledRay,

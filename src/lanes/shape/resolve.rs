@@ -77,7 +77,9 @@ impl Resolver {
             return Some(Resolved {
                 t: 0.0,
                 object: departure.object,
-                part: placed.kind().part(placed.inverse().point(ray.origin)),
+                part: placed
+                    .kind()
+                    .part(placed.ladder.inverse().point(ray.origin)),
             });
         }
         let (index, hit) = found?;

@@ -45,10 +45,6 @@ pub struct ImplicitHit {
 }
 
 impl SteppingFinder {
-    /// Places the surface.
-    ///
-    /// # Errors
-    /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
     pub fn new(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
         Ok(Self {
             field: Field::new(&implicit.field.tape),

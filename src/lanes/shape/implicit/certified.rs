@@ -23,7 +23,6 @@ use crate::math::words::{Pair, Plain, Row};
 use crate::root::exact::ExactRoot;
 use crate::shape::{Ray, Tier};
 
-/// Lanes of a packet.
 pub const WIDTH: usize = 8;
 
 /// Eight rays and their limits.

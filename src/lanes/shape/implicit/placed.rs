@@ -95,10 +95,6 @@ pub enum ImplicitAnswer {
 }
 
 impl PlacedImplicit {
-    /// Places the surface.
-    ///
-    /// # Errors
-    /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
     pub fn new(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
         let stepping = SteppingFinder::new(implicit, to_world)?;
         Ok(Self {
@@ -111,8 +107,7 @@ impl PlacedImplicit {
         &self.finder
     }
 
-    /// The first hit with `t_min` < t < `t_max` inside the clip box; t = 0 counts where `t_min` is
-    /// 0.
+    /// The first hit with `t_min` < t < `t_max` inside the clip box; t = 0 counts where `t_min` is 0.
     pub fn first_hit(
         &self,
         query: &Query,

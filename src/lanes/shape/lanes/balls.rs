@@ -6,7 +6,6 @@ use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::lookup::SMALL;
 use crate::shape::sphere::{Ball, Foot, ball_span};
 
-/// Most balls of a group.
 pub const MOST: usize = SMALL;
 
 /// Bound of the error of the squared distance in [`Balls::near`], in units of u (max|o| + max|c|)²:

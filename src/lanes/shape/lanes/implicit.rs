@@ -15,12 +15,12 @@ use crate::math::instructions::Instructions;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, WIDEST};
 use crate::math::packet::array;
 use crate::math::vec3::{Rows, Vec3};
+use crate::shape::Tally;
 use crate::shape::hierarchy::{Bounds, OuterBox};
 use crate::shape::implicit::Implicit;
 use crate::shape::implicit::certified::{Packet, WIDTH, Workspace};
 use crate::shape::implicit::placed::Finder;
 use crate::shape::ladder::Ladder;
-use crate::shape::{SingularMatrix, Tally};
 
 use super::LaneRay;
 use crate::field::lanes::{LaneField, Scratch, each};
@@ -70,20 +70,13 @@ pub struct FieldQuestion<'a, L: Lanes> {
 }
 
 impl<T: Scalar> LaneImplicit<T> {
-    /// Rounds a placement: clip box in object coordinates, world → object map.
-    ///
-    /// # Errors
-    /// [`SingularMatrix`] where the matrix cannot be inverted.
-    pub fn new(
-        implicit: &Implicit,
-        to_world: &Affine,
-        inverse: &Affine,
-    ) -> Result<Self, SingularMatrix> {
+    pub fn new(implicit: &Implicit, to_world: &Affine, ladder: &Ladder) -> Self {
+        let inverse = ladder.inverse();
         let inside = implicit.inside;
         let centre = (inside[0] + inside[1]) / 2.0;
         let half = (inside[1] - inside[0]) / 2.0;
         let largest_row = inverse.abs().vector(DVec3::ONE).max_element();
-        Ok(Self {
+        Self {
             field: LaneField::new(&implicit.field.tape),
             scalar: Field::new(&implicit.field.tape),
             size: (inside[1] - inside[0]).max_element(),
@@ -93,8 +86,8 @@ impl<T: Scalar> LaneImplicit<T> {
             inverse: Rows::from_f64(&inverse.rows),
             bounds: OuterBox::new(&Bounds::around_image(to_world, inside[0], inside[1])),
             rounding: T::from_f64(16.0 * T::ROUNDOFF * largest_row),
-            finder: Finder::new(implicit, &Ladder::new(to_world)?),
-        })
+            finder: Finder::new(implicit, ladder),
+        }
     }
 
     pub fn finder(&self) -> &Finder {

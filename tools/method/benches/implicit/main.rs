@@ -75,7 +75,7 @@ impl Surface {
         Self {
             degree: implicit.field.polynomial.as_ref().unwrap().degree(),
             certified: Certified::new(tape, inside, &ladder).unwrap(),
-            stepping: LaneImplicit::new(&implicit, &Affine::IDENTITY, &Affine::IDENTITY).unwrap(),
+            stepping: LaneImplicit::new(&implicit, &Affine::IDENTITY, &ladder),
             scalar: SteppingFinder::new(&implicit, &Affine::IDENTITY).unwrap(),
             yardstick: Yardstick::new(tape, half),
         }
