@@ -253,7 +253,7 @@ impl<T: Scalar> Hierarchy<T> {
                 .get(object as usize)
                 .is_some_and(|s| s.ball().is_some())
         };
-        let parts = split(objects, WIDTH, level < FREE_LEVELS, is_ball);
+        let parts = split(objects, level < FREE_LEVELS, is_ball);
         for (i, part) in parts.into_iter().enumerate() {
             let bounds = Bounds::around(&*part);
             let child = self.child(part, shapes, level);

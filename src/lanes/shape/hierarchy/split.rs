@@ -1,6 +1,6 @@
 //! How objects are shared out among the children of a node.
 
-use super::{Bounds, Item};
+use super::{Bounds, Item, WIDTH};
 use crate::shape::lanes::balls::MOST;
 
 /// Slices of the centres' range in which splits are sought. Finer ones change the expected cost
@@ -34,27 +34,21 @@ impl<'a> Group<'a> {
 /// Otherwise the lowest nodes are half full on average, and so up to twice as many.
 const FULL: f64 = 1.25;
 
-/// The largest power of `width` below a number: how many objects a full child has.
-fn full_child(width: usize, objects: usize) -> usize {
-    let mut full = 1;
-    while full * width < objects {
-        full *= width;
-    }
-    full
-}
-
-/// Up to `width` parts, none of them empty: of the parts so far that are more than a full child, the
+/// Up to [`WIDTH`] parts, none of them empty: of the parts so far that are more than a full child, the
 /// one that costs most is split where the surface-area heuristic finds it cheapest, or, where not
 /// `free`, the largest is halved.
 pub fn split(
     objects: &mut [Item],
-    width: usize,
     free: bool,
     is_ball: impl Fn(u32) -> bool + Copy,
 ) -> Vec<&mut [Item]> {
-    let full = full_child(width, objects.len());
+    // A full child has the largest power of WIDTH below the number of objects.
+    let mut full = 1;
+    while full * WIDTH < objects.len() {
+        full *= WIDTH;
+    }
     let mut parts = vec![Group::new(objects, is_ball)];
-    while parts.len() < width {
+    while parts.len() < WIDTH {
         let is_done = |part: &Group<'_>| part.one_test || (free && part.objects.len() <= full);
         let weight = |part: &Group<'_>| match (is_done(part), free) {
             (true, _) => -1.0,

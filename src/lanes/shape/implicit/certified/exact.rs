@@ -14,17 +14,20 @@ use crate::root::sharpen::sharpened;
 use crate::shape::Ray;
 use crate::shape::ladder::ScaledRay;
 
-/// A ray in integers: local point = (origin + t direction) / scale.
+/// A ray in integers: local point = (origin + t direction) / scale, with t in units of the scaled
+/// direction and a common power of two left out.
 struct IntegerRay {
     /// Origin and direction by coordinate.
     coordinates: [[BigInt; 2]; 3],
     scale: BigInt,
+    /// Factor from t of the world ray to t here.
+    unit: f64,
 }
 
 impl IntegerRay {
-    /// With a common power of two left out; t is in units of the scaled direction.
-    fn new(placed: &Certified, ray: &ScaledRay) -> Self {
-        let line = placed.ladder.exact.local(ray);
+    fn new(placed: &Certified, ray: &Ray) -> Self {
+        let scaled = ScaledRay::new(ray);
+        let line = placed.ladder.exact.local(&scaled);
         let all = line
             .origin
             .iter()
@@ -43,7 +46,13 @@ impl IntegerRay {
         Self {
             coordinates: [0, 1, 2].map(|i| [&line.origin[i], &line.direction[i]].map(integer)),
             scale: integer(&line.scale),
+            unit: power_of_two(scaled.exponent()),
         }
+    }
+
+    /// Coefficients of a factor's field in powers of t.
+    fn coefficients(&self, program: &Program) -> Option<Vec<BigInt>> {
+        program.powers(&self.coordinates, &self.scale, program.result().degree)
     }
 
     /// Where the line is in the closed clip box and the limits are kept; `None` for nowhere.
@@ -105,17 +114,13 @@ pub(super) fn first_hit(
     if !ray.is_valid() || limits[0].is_nan() || limits[1].is_nan() {
         return None;
     }
-    let scaled = ScaledRay::new(ray);
-    let unit = power_of_two(scaled.exponent());
-    let line = IntegerRay::new(placed, &scaled);
+    let line = IntegerRay::new(placed, ray);
+    let unit = line.unit;
     let stretch = line.stretch(placed, limits.map(|t| t * unit))?;
     let hint = Some(hint * unit).filter(|x| x.is_finite());
     let mut first: Option<ExactRoot> = None;
     for factor in &placed.factors {
-        let degree = factor.program.result().degree;
-        let mut coefficients = factor
-            .program
-            .powers(&line.coordinates, &line.scale, degree)?;
+        let mut coefficients = line.coefficients(&factor.program)?;
         if let Some(roundoff) = start_roundoff
             && is_start(&coefficients, roundoff)
         {
@@ -149,15 +154,11 @@ pub(super) fn hit_points(
     enclosure: [f64; 2],
     bits: u32,
 ) -> Option<[[Exact; 3]; 2]> {
-    let scaled = ScaledRay::new(ray);
-    let unit = power_of_two(scaled.exponent());
-    let line = IntegerRay::new(placed, &scaled);
+    let line = IntegerRay::new(placed, ray);
+    let unit = line.unit;
     let mut first: Option<([Exact; 2], u32)> = None;
     for factor in &placed.factors {
-        let degree = factor.program.result().degree;
-        let coefficients = factor
-            .program
-            .powers(&line.coordinates, &line.scale, degree)?;
+        let coefficients = line.coefficients(&factor.program)?;
         let Some(ends) = sharpened(&coefficients, enclosure.map(|t| t * unit), bits) else {
             continue;
         };
@@ -169,7 +170,7 @@ pub(super) fn hit_points(
         }
     }
     let (ends, power) = first?;
-    let local = placed.ladder.exact.local(&scaled);
+    let local = placed.ladder.exact.local(&ScaledRay::new(ray));
     let point = |t: &Exact| {
         [0, 1, 2].map(|i| {
             let place = local.origin[i].plus(&local.direction[i].times(t));
@@ -187,9 +188,8 @@ pub(super) fn order_of_vanishing(
     ray: &Ray,
     t: f64,
 ) -> usize {
-    let scaled = ScaledRay::new(ray);
-    let line = IntegerRay::new(placed, &scaled);
-    let at = Point::of(t * power_of_two(scaled.exponent()));
+    let line = IntegerRay::new(placed, ray);
+    let at = Point::of(t * line.unit);
     // (o + (t + τ) d) / s = (o q + p d + τ' d) / (s q) for t = p / q and τ' = q τ.
     let (p, q) = (&at.numerator, &at.denominator);
     let mut coordinates = line.coordinates;
