@@ -77,7 +77,7 @@ impl Bounds {
     }
 
     /// Half the area of its surface, to which the number of random lines that meet it is proportional;
-    /// 0 for [`Self::NOTHING`].
+    /// 0 for no box at all.
     pub fn half_area(&self) -> f64 {
         let side = (self.high - self.low).max(DVec3::ZERO);
         side.x * side.y + side.y * side.z + side.z * side.x

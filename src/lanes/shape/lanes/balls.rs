@@ -81,8 +81,8 @@ impl<T: Scalar> Balls<T> {
     /// The places of balls that each lane's ray may meet before `limit`, place i as bit i, without those
     /// of the objects `left_out`.
     ///
-    /// Decided as by [`Foot::is_apart`], with fewer operations and a larger error: with g = (o − c) · d, the foot is at
-    /// −g/|d|² and its squared distance from the centre |o|² − 2 o · c + |c|² − g²/|d|².
+    /// Decided as by `Foot::is_apart`, with fewer operations and a larger error: with g = (o − c) · d, the
+    /// foot is at −g/|d|² and its squared distance from the centre |o|² − 2 o · c + |c|² − g²/|d|².
     #[inline(always)]
     pub fn near<L: Lanes<Scalar = T>, const N: usize>(
         &self,
@@ -130,7 +130,7 @@ impl<T: Scalar> Balls<T> {
         near
     }
 
-    /// [`Self::near`] for rays from farther away than the bounds of [`Foot::is_apart`] hold.
+    /// [`Self::near`] for rays from farther away than the bounds of `Foot::is_apart` hold.
     #[inline(never)]
     fn near_from_afar<L: Lanes<Scalar = T>>(
         &self,
