@@ -23,7 +23,7 @@ pub struct Departure {
 /// A ray that lanes could not decide.
 #[derive(Debug, Clone, Copy)]
 pub struct UndecidedRay<'a> {
-    /// The objects that it may meet, in increasing order; `None` for all.
+    /// The objects that it may meet; `None` for all.
     pub candidates: Option<&'a [u32]>,
     pub ray: Ray,
     pub departure: Departure,
@@ -69,7 +69,7 @@ impl Resolver {
             |i| self.priorities[i],
             tally,
         );
-        if let Some(index) = self.gone_into(departure)
+        if let Some(index) = self.entered(departure)
             && found.as_ref().is_none_or(|(found, _)| *found != index)
             && self.exit(index, &ray, tally).is_none()
         {
@@ -91,7 +91,7 @@ impl Resolver {
     }
 
     /// The closed shape that a ray enters from a point of its surface.
-    fn gone_into(&self, departure: Departure) -> Option<usize> {
+    fn entered(&self, departure: Departure) -> Option<usize> {
         let index = self.objects.binary_search(&departure.object).ok()?;
         (departure.inward && !self.placed[index].kind().is_flat()).then_some(index)
     }
@@ -128,7 +128,7 @@ impl Resolver {
         }
         // What lies beyond the exit from the shape that the ray enters is hidden, also where the exit is
         // not ahead.
-        match self.gone_into(departure) {
+        match self.entered(departure) {
             Some(index) if departure.object != except => {
                 let exit = self.exit(index, &ray, tally);
                 exit.is_none_or(|exit| exit.t < t_max)
