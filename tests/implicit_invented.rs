@@ -5,6 +5,7 @@
 use etalon::inside::field::tape::{Binary, Operation, Tape};
 use etalon::inside::math::affine::Affine;
 use etalon::inside::shape::implicit::certified::{Answers, Certified, Effort, Packet, Workspace};
+use etalon::inside::shape::ladder::Ladder;
 use etalon::{Instructions, Tier};
 use glam::DVec3;
 use num_bigint::BigInt;
@@ -148,8 +149,8 @@ fn invented_polynomials_are_isolated_as_they_were_made() {
         let invented = Invented::new(&mut random);
         let tape = invented.tape();
         let inside = [DVec3::splat(-HALF), DVec3::splat(HALF)];
-        let certified = Certified::new(&tape, inside, &Affine::IDENTITY).unwrap();
-        let certified = certified.unwrap();
+        let ladder = Ladder::new(&Affine::IDENTITY).unwrap();
+        let certified = Certified::new(&tape, inside, &ladder).unwrap();
         for _ in 0..4 {
             let (origin, direction) = ray(&mut random);
             let mut packet = Packet::default();

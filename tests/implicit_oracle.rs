@@ -14,6 +14,7 @@ use etalon::inside::shape::implicit::certified::{
     Answers, Certified, Effort, Packet, WIDTH, Workspace,
 };
 use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitHit, PlacedImplicit};
+use etalon::inside::shape::ladder::Ladder;
 use etalon::{Instructions, Tier};
 use etalon_doors::shapes::without_bounds;
 
@@ -34,7 +35,8 @@ fn surfaces(finder: FinderChoice) -> Surfaces {
         let half = shape.half_width;
         let implicit = implicit(shape.field, half, finder);
         let (tape, to_world) = (&implicit.field.tape, &Affine::IDENTITY);
-        let certified = Certified::new(tape, implicit.inside, to_world).unwrap();
+        let ladder = Ladder::new(to_world).unwrap();
+        let certified = Certified::new(tape, implicit.inside, &ladder);
         let surface = Surface {
             placed: PlacedImplicit::new(&implicit, to_world).unwrap(),
             certified: certified.unwrap(),

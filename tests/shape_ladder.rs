@@ -7,8 +7,8 @@ use etalon::inside::math::double_double::DoubleDouble;
 use etalon::inside::math::exact::Exact;
 use etalon::inside::math::number::{Bounded, Number};
 use etalon::inside::shape::ladder::{Question, ScaledRay};
-use etalon::inside::shape::question::{FirstCrossing, Limits};
-use etalon::inside::shape::{Placed, Ray, ShapeKind, SingularMatrix, Start, Tally};
+use etalon::inside::shape::list::FirstCrossing;
+use etalon::inside::shape::{Placed, Query, Ray, ShapeKind, SingularMatrix, Start, Tally};
 use etalon_doors::shapes::{Through, crossings};
 use glam::{DMat3, DQuat, DVec3};
 use rand::{Rng, RngExt, SeedableRng};
@@ -159,13 +159,14 @@ fn lower_rungs_never_contradict_the_exact_one() {
             continue;
         }
         let what = format!("{kind:?} {to_world:?} {ray:?} {t_min}");
-        let scaled = ScaledRay::new(&ray);
+        let t_max = f64::INFINITY;
+        let (scaled, limits) = Query { ray, t_min, t_max }.scaled().unwrap();
         decided.ask(&placed, &scaled, &Through(kind), &what);
         for start in [Start::Free, Start::OnSurfaceInward] {
             let first = FirstCrossing {
                 kind,
                 ray: &scaled,
-                limits: &Limits::new(t_min, f64::INFINITY).unwrap(),
+                limits: &limits,
                 start,
             };
             decided.ask(&placed, &scaled, &first, &what);

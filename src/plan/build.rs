@@ -188,7 +188,7 @@ impl<'a, T: Scalar> Builder<'a, T> {
         let to_world = about_camera(scene, object);
         let kind = object.shape.kind();
         let placed = Placed::new(kind.unwrap_or(ShapeKind::Cube), &to_world).ok()?;
-        let inverse = placed.inverse();
+        let inverse = placed.ladder.inverse();
         if !inverse.rows.iter().flatten().all(|x| x.is_finite()) {
             return None;
         }
@@ -197,7 +197,7 @@ impl<'a, T: Scalar> Builder<'a, T> {
             .push(LaneShape::new(kind, &to_world, &inverse, start));
         match &object.shape {
             Shape::Implicit(implicit) => {
-                let lanes = LaneImplicit::new(implicit, &to_world, &inverse).ok()?;
+                let lanes = LaneImplicit::new(implicit, &to_world, &placed.ladder);
                 self.implicits.push((index as u32, lanes));
             }
             Shape::Canonical(_) => {

@@ -4,10 +4,9 @@ use std::borrow::Cow;
 
 use crate::math::instructions::Instructions;
 use crate::scene::{Named, Object, Scene, Shape};
-use crate::shape::hierarchy::Bounds;
+use crate::shape::hierarchy::{Bounds, RayIndex};
 use crate::shape::implicit::certified::Workspace;
 use crate::shape::implicit::placed::{ImplicitAnswer, PlacedImplicit};
-use crate::shape::index::RayIndex;
 use crate::shape::list::nearest;
 use crate::shape::{Placed, Query, Ray, Start, Tally, Tier};
 use glam::DVec3;

@@ -40,7 +40,7 @@ impl<T: Scalar> Job<T> for Spans<'_> {
     fn run<L: Lanes<Scalar = T>>(self, l: L) -> Vec<RaySpan> {
         let mut spans = Vec::with_capacity(self.0.len());
         for (placed, ray) in self.0 {
-            let (kind, inverse) = (Some(placed.kind()), placed.inverse());
+            let (kind, inverse) = (Some(placed.kind()), placed.ladder.inverse());
             let reach = ray.origin.abs().max_element();
             let shape = LaneShape::new(kind, placed.to_world(), &inverse, reach);
             let (origin, direction) = (Vec3::splat(l, ray.origin), Vec3::splat(l, ray.direction));

@@ -11,7 +11,6 @@ use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::number::Number;
 use crate::math::vec3::Vec3;
 
-/// The surface of [-1, 1]³.
 pub struct Cube;
 
 impl Canonical for Cube {
@@ -80,7 +79,10 @@ impl Canonical for Cube {
     /// The coordinate of the face made exact.
     #[inline(always)]
     fn snapped<L: Lanes>(l: L, local: Vec3<L::Real>) -> Vec3<L::Real> {
-        let (on_x, on_y) = faces::<L>(local);
+        // The face is that of the largest coordinate.
+        let (ax, ay, az) = (local.x.abs(), local.y.abs(), local.z.abs());
+        let on_x = ax.ge(ay) & ax.ge(az);
+        let on_y = !on_x & ay.ge(az);
         let one = l.real(1.0);
         Vec3::new(
             l.select(on_x, one.copysign(local.x), local.x),
@@ -100,7 +102,7 @@ fn slabs<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> [Lan
     [slab(0), slab(1), slab(2)]
 }
 
-/// The same where some line may run along a slab.
+/// The span where some line may run along a slab.
 #[cold]
 #[inline(never)]
 fn with_parallels<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> LaneSpan<L> {
@@ -151,12 +153,4 @@ fn joined<L: Lanes>(
         miss: outside | (near.low.gt(far.high) & !lost),
         parts,
     }
-}
-
-/// Which pair of faces a point is on: that of the largest coordinate.
-#[inline(always)]
-fn faces<L: Lanes>(local: Vec3<L::Real>) -> (L::Mask, L::Mask) {
-    let (ax, ay, az) = (local.x.abs(), local.y.abs(), local.z.abs());
-    let on_x = ax.ge(ay) & ax.ge(az);
-    (on_x, !on_x & ay.ge(az))
 }

@@ -6,14 +6,13 @@ use glam::DVec3;
 
 use super::kind::{Canonical, Emitter, LaneQuestion, Length};
 use super::lanes::{LaneShape, LaneSpan, LaneSurface};
-use super::line::{Crossing, Fraction, LocalRay, Span};
+use super::line::{Fraction, LocalRay, Span};
 use super::slab::{LaneSlab, Slab, cut, reach, slab};
 use super::sphere::round_span;
 use crate::math::lanes::{Lanes, Mask, Real};
 use crate::math::number::{Number, dot};
 use crate::math::vec3::Vec3;
 
-/// x² + y² = 1 for |z| ≤ 1, with both caps.
 pub struct Cylinder;
 
 impl Canonical for Cylinder {
@@ -37,10 +36,7 @@ impl Canonical for Cylinder {
         if ray.discriminant(2, &a).sign()? == Ordering::Less {
             return Some(None);
         }
-        let side = Span {
-            near: Crossing::round(2, false),
-            far: Crossing::round(2, true),
-        };
+        let side = Span::round(2);
         match slab(ray, 2)? {
             Slab::Crossed(caps) => cut(ray, side, &caps),
             Slab::Inside => Some(Some(side)),
@@ -48,8 +44,8 @@ impl Canonical for Cylinder {
         }
     }
 
-    /// The side as a circle about the foot of the perpendicular in the plane (bounds as for the
-    /// sphere, with √2 in place of √3), the caps as a slab.
+    /// The side by [`round_span`] across the axis, where √2 stands in place of the √3 of its bounds; the
+    /// caps as a slab.
     #[inline(always)]
     fn lane_span<L: Lanes>(l: L, question: &LaneQuestion<'_, L>) -> LaneSpan<L> {
         let LaneQuestion {
@@ -71,6 +67,8 @@ impl Canonical for Cylinder {
         // Along the axis the relative error of the direction across it is unbounded.
         let parallel = !across.sqrt().gt(dd * l.real(8.0));
         if (parallel & asked).any() {
+            // How far the line moves across the axis within the reach: |d| + √2 D and √2 E, rounded up
+            // to 2 D and 2 E; a millionth pays for the evaluation.
             let drift = (across.sqrt() + dd * l.real(2.0))
                 .mul_add(reach(l, shape, ray, o, d), e0 * l.real(2.0))
                 * l.real(1.0 + 1e-6);

@@ -10,7 +10,6 @@ use super::line::{Fraction, LocalRay};
 use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::number::Number;
 
-/// z = 0, x² + y² ≤ 1.
 pub struct Disk;
 
 impl Flat for Disk {
@@ -26,8 +25,8 @@ impl Flat for Disk {
         Some(ray.radial(2, t).0.sign()? != Ordering::Greater)
     }
 
-    /// The distance of (x, y) from its exact place is at most √2 of the margin, and 1½ pays for
-    /// the arithmetic of the squares as well.
+    /// (x, y) is at most √2 of the margin from its exact place; 1½ pays for evaluating z ∓ margin too.
+    /// x² + y² is rounded twice and (z ∓ margin)² three times, 5u of z² or 2½u of z: 4u pay for that.
     #[inline(always)]
     fn contains<L: Lanes>(
         l: L,

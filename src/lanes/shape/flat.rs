@@ -13,8 +13,7 @@ use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::number::Number;
 use crate::math::vec3::Vec3;
 
-/// The one crossing with z = 0. A line in the plane sees it from its edge, where it has no extent:
-/// that touch is a miss.
+/// The one crossing with z = 0. A line in the plane misses: it sees the shape edge-on.
 fn crossing<N: Number>(ray: &LocalRay<N>) -> Option<Option<Crossing>> {
     let slope = ray.direction[2].sign()?;
     Some((slope != Ordering::Equal).then_some(Crossing {
@@ -23,25 +22,21 @@ fn crossing<N: Number>(ray: &LocalRay<N>) -> Option<Option<Crossing>> {
     }))
 }
 
-/// A part of the plane z = 0, and through it a canonical shape.
+/// A part of the plane z = 0. What has the name of an item of [`Canonical`] becomes that item.
 pub trait Flat {
-    /// [`Canonical::NAME`].
     const NAME: &'static str;
-    /// [`Canonical::LENGTHS`].
     const LENGTHS: &'static [Length] = &[];
-    /// [`Canonical::EMITTER`].
     const EMITTER: Emitter;
 
-    /// [`Canonical::corners`].
     fn corners() -> Option<[DVec3; 2]> {
         Some([DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.0)])
     }
 
-    /// [`Canonical::half_range`], for the components of a in the plane.
+    /// For the components of a in the plane.
     fn half_range(along: DVec2) -> f64;
 
-    /// Whether it covers the line's point on z = 0, at parameter `t`; `None` where this kind of
-    /// number cannot tell.
+    /// Whether it covers the line's point at `t`, where z is 0; `None` where this kind of number cannot
+    /// tell.
     fn covers<N: Number>(ray: &LocalRay<N>, t: &Fraction<N>) -> Option<bool>;
 
     /// Whether the point (x/z, y/z), with each of x, y and z > 0 within `margin` together, is
@@ -83,7 +78,8 @@ impl<F: Flat> Canonical for F {
     }
 
     /// t = −o_z/d_z within 2 (E_z + |t| D_z)/|d_z| + 5u|t| (first order, doubled for the rest while
-    /// D_z ≤ |d_z|/4, which [`margins`] sees to; 5u pay for the arithmetic up to the rounded ends).
+    /// D_z ≤ |d_z|/4, which [`margins`] ensures; 1/d_z, the product and the ends t ∓ error are each off
+    /// by u, the rest of 5u pays for evaluating the error).
     #[inline(always)]
     fn lane_span<L: Lanes>(l: L, question: &LaneQuestion<'_, L>) -> LaneSpan<L> {
         let LaneQuestion { shape, ray, .. } = *question;
@@ -120,7 +116,6 @@ impl<F: Flat> Canonical for F {
         }]
     }
 
-    /// The height made exact.
     #[inline(always)]
     fn snapped<L: Lanes>(l: L, local: Vec3<L::Real>) -> Vec3<L::Real> {
         Vec3::new(local.x, local.y, l.real(0.0))

@@ -1,7 +1,7 @@
 //! A hierarchy of bounding boxes for scenes of many objects.
 //!
 //! Nodes have [`WIDTH`] children, whose boxes are tested together: lanes are boxes, since the rays of
-//! a packet share no way after the first bounce. A child is a node, up to [`WIDTH`] balls that are
+//! a packet take different ways after the first bounce. A child is a node, up to [`WIDTH`] balls that are
 //! tested together too, or one object of another shape. Every bound is outward, so that an object is
 //! skipped only if the ray surely misses its box.
 
@@ -13,13 +13,14 @@ use super::lanes::LaneShape;
 use super::lanes::balls::{Balls, MOST};
 use crate::math::affine::Affine;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar};
+use crate::math::ray::Ray;
+use crate::math::scalar_lane::One;
 use crate::math::vec3::Vec3;
 use split::split;
 
-/// Children of a node.
 pub const WIDTH: usize = MOST;
-/// Levels whose nodes are split where it saves most; deeper nodes, of which only strange scenes have
-/// any, are halved.
+/// Levels whose nodes are split at the lowest cost; deeper nodes, which only unusual scenes have, are
+/// halved.
 const FREE_LEVELS: usize = 12;
 /// Levels below those of a tree over 2³² objects: each of 16 children has at most an eighth of its
 /// node's objects.
@@ -63,9 +64,8 @@ impl Bounds {
         }
     }
 
-    /// Around the same image, whatever rounding has done to it: centre and reach are each off by at
-    /// most 5 roundings of the largest magnitude on the way, their sum by two more; 16 pay for this
-    /// number's own.
+    /// Around the exact image: centre and reach are each off by at most 5 roundings of the largest
+    /// magnitude on the way, their sum by two more; 16 in place of 12 pay for evaluating the error.
     pub fn around_image(to_world: &Affine, low: DVec3, high: DVec3) -> Self {
         let image = Self::of_image(to_world, low, high);
         let farthest = low.abs().max(high.abs());
@@ -76,8 +76,8 @@ impl Bounds {
         }
     }
 
-    /// Half its surface, to which the number of random lines that meet it is proportional; 0 for
-    /// nothing.
+    /// Half the area of its surface, to which the number of random lines that meet it is proportional;
+    /// 0 for no box at all.
     pub fn half_area(&self) -> f64 {
         let side = (self.high - self.low).max(DVec3::ZERO);
         side.x * side.y + side.y * side.z + side.z * side.x
@@ -98,8 +98,8 @@ impl<T: Scalar> OuterBox<T> {
         }
     }
 
-    /// Which rays, one a lane, may meet the box before their limits: no ray that does is left out.
-    /// `inverse` are the reciprocals of the direction's components.
+    /// Which rays, one a lane, may meet the box before their limits, with none missing. `inverse` are the
+    /// reciprocals of the direction's components.
     #[inline(always)]
     pub fn meets<L: Lanes<Scalar = T>>(
         &self,
@@ -183,7 +183,7 @@ impl<L: Lanes> BoxRay<L> {
     }
 }
 
-/// Where rays are on their way through a hierarchy, one after the other.
+/// What one ray after the other has still to visit in a hierarchy.
 pub struct Descent<T> {
     /// Children to visit and where the ray enters their boxes.
     stack: [(T, u32); STACK],
@@ -198,8 +198,8 @@ impl<T: Scalar> Descent<T> {
         self.length = 1;
     }
 
-    /// Puts a child on the stack; in order among those of its node, which lie from `bottom` on,
-    /// nearest on top.
+    /// Puts a child on the stack; where `ORDERED`, sorted among those of its node, which lie from
+    /// `bottom` on, nearest on top.
     #[inline(always)]
     fn push<const ORDERED: bool>(&mut self, bottom: usize, near: T, child: u32) {
         let mut at = self.length;
@@ -253,7 +253,7 @@ impl<T: Scalar> Hierarchy<T> {
                 .get(object as usize)
                 .is_some_and(|s| s.ball().is_some())
         };
-        let parts = split(objects, WIDTH, level < FREE_LEVELS, is_ball);
+        let parts = split(objects, level < FREE_LEVELS, is_ball);
         for (i, part) in parts.into_iter().enumerate() {
             let bounds = Bounds::around(&*part);
             let child = self.child(part, shapes, level);
@@ -280,8 +280,8 @@ impl<T: Scalar> Hierarchy<T> {
         }
     }
 
-    /// What the ray meets the box of before `limit` next: nearest boxes first, where `ORDERED`, so that
-    /// a hit may save the others.
+    /// The next child whose box the ray meets before `limit`; nearest boxes first where `ORDERED`, so
+    /// that a hit can make the others unnecessary.
     #[inline(always)]
     pub fn next<L: Lanes<Scalar = T>, const ORDERED: bool>(
         &self,
@@ -348,6 +348,47 @@ impl<T: Scalar> Hierarchy<T> {
     }
 }
 
+/// Boxes over the objects of a scene in world coordinates, for single rays.
+#[derive(Debug, Clone)]
+pub struct RayIndex {
+    boxes: Hierarchy<f64>,
+    unbounded: Vec<u32>,
+}
+
+impl RayIndex {
+    /// Over objects with these boxes; `None` for one that has no end.
+    pub fn new(bounds: impl IntoIterator<Item = Option<Bounds>>) -> Self {
+        let mut items: Vec<Item> = Vec::new();
+        let mut unbounded = Vec::new();
+        for (object, bounds) in (0..).zip(bounds) {
+            match bounds {
+                Some(bounds) => items.push((object, bounds)),
+                None => unbounded.push(object),
+            }
+        }
+        // Without shapes no objects are grouped as balls.
+        let boxes = Hierarchy::new(&items, &[]);
+        Self { boxes, unbounded }
+    }
+
+    /// The objects that the ray may meet with 0 ≤ t ≤ `t_max`, in increasing order.
+    pub fn candidates(&self, ray: &Ray, t_max: f64) -> Vec<u32> {
+        let inverse = ray.direction.to_array().map(|d| 1.0 / d);
+        let ray = BoxRay::new(One, ray.origin.to_array(), inverse);
+        let mut descent = Descent::default();
+        descent.restart();
+        let mut objects = self.unbounded.clone();
+        while let Some(child) = self.boxes.next::<_, false>(One, &mut descent, &ray, t_max) {
+            match child {
+                Child::Object(object) => objects.push(object),
+                Child::Balls(balls) => objects.extend(&balls.objects[..balls.count]),
+            }
+        }
+        objects.sort_unstable();
+        objects
+    }
+}
+
 /// Narrows the part of a ray that is in a box by a slab, given by where the ray enters and leaves it.
 #[inline(always)]
 fn narrow<L: Lanes>(
@@ -365,13 +406,15 @@ fn narrow<L: Lanes>(
 /// Where a box is entered at the earliest, and whether it may be met at all.
 #[inline(always)]
 fn met<L: Lanes>(l: L, near: L::Real, far: L::Real) -> (L::Real, L::Mask) {
-    // (b − o)/d is off by at most 3u of itself, and these products by one more; doubled.
+    // (b − o)/d is off by 3u of itself (difference, reciprocal, product), and the products here by one
+    // more; doubled.
     let slack = 8.0 * L::Scalar::ROUNDOFF;
     let near = near * l.real(1.0 - slack);
     (near, near.le(far * l.real(1.0 + slack)))
 }
 
-/// The numbers of the type that enclose an interval, with room to spare.
+/// Numbers of the type that enclose an interval: 2u pay for rounding to T, 1e-14 for the sums in f64
+/// here and before, the smallest normal number for an end at 0.
 fn outward<T: Scalar>(low: f64, high: f64) -> [T; 2] {
     let slack = |x: f64| x.abs() * (2.0 * T::ROUNDOFF + 1e-14) + f64::MIN_POSITIVE;
     [low - slack(low), high + slack(high)].map(T::from_f64)

@@ -1,4 +1,4 @@
-//! What a canonical shape is and can, and the list of them.
+//! The contract of canonical shapes, and their list.
 
 use glam::DVec3;
 
@@ -9,10 +9,10 @@ use crate::math::lanes::{Lanes, Scalar};
 use crate::math::number::Number;
 use crate::math::vec3::Vec3;
 
-/// How points are chosen on a shape that emits.
+/// How points are sampled on a shape that emits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Emitter {
-    /// They are not: scattered rays alone find the light.
+    /// Not at all: scattered rays alone find the light.
     Unsampled,
     Disk,
     Rectangle,
@@ -31,7 +31,7 @@ pub struct Length {
     pub each: bool,
     /// Half the extent over the length: 1 for a radius, ½ for an edge.
     pub share: f64,
-    /// What is meant where it is left out; `None` for another way to say what an earlier one says.
+    /// The value where the key is left out; `None` for a key that replaces an earlier one.
     pub default: Option<f64>,
 }
 
@@ -59,14 +59,14 @@ impl Length {
     }
 }
 
-/// The lines that a shape is asked about in lanes.
+/// Rays in lanes that are tested against a shape.
 #[derive(Clone, Copy)]
 pub struct LaneQuestion<'a, L: Lanes> {
     pub shape: &'a LaneShape<L::Scalar>,
     pub ray: &'a LaneRay<L>,
     /// Lanes whose answer counts.
     pub asked: L::Mask,
-    /// A shape that lies beyond this as a whole may be called missed.
+    /// A shape of which all lies beyond this may be called missed.
     pub limit: L::Real,
 }
 
@@ -76,14 +76,14 @@ pub trait Canonical {
     const LENGTHS: &'static [Length] = &[];
     /// Whether scene files may say where its centre is, by the key `center`.
     const CENTERED: bool = false;
-    /// Whether it is a piece of the plane z = 0, with +z as its front; else it is closed.
+    /// Whether it is a piece of the plane z = 0, with +z as its front; else it is the surface of a body.
     const FLAT: bool = false;
-    /// Whether a ray that leaves it outward never comes back, so that it need not be asked again.
+    /// Whether a ray that leaves it outward never meets it again, so that it need not be tested.
     const CONVEX: bool = true;
     const EMITTER: Emitter = Emitter::Unsampled;
     /// Its parallel faces, as (canonical axis, places on it).
     const FACES: &'static [(usize, &'static [f64])] = &[];
-    /// How many of its coordinates a round wall of radius 1 is about.
+    /// The number of coordinates in Σx² = 1, for a round wall.
     const ROUND: Option<usize> = None;
 
     /// Opposite corners of its box; `None` where it has no end.
@@ -97,8 +97,8 @@ pub trait Canonical {
     /// Where the line enters and leaves it: `None` where this kind of number cannot tell.
     fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>>;
 
-    /// The same in lanes, with bounds; lanes that these cannot decide are taken to the ladder. What is
-    /// said of lanes that are not asked means nothing.
+    /// [`Self::span`] in lanes, with error bounds; lanes that these cannot decide are taken to the
+    /// ladder. Meaningless in lanes that are not asked.
     fn lane_span<L: Lanes>(l: L, question: &LaneQuestion<'_, L>) -> LaneSpan<L>;
 
     /// The parts, in the order in which [`LaneSpan`] numbers them.
@@ -111,7 +111,7 @@ pub trait Canonical {
         0
     }
 
-    /// What a hit near the world point p looks like, for parts of the kind
+    /// The surface at a hit near the world point p, for parts of the kind
     /// [`PartKind::Other`](super::lanes::part::PartKind::Other).
     #[inline(always)]
     fn surface<L: Lanes>(_l: L, _shape: &LaneShape<L::Scalar>, p: Vec3<L::Real>) -> LaneSurface<L> {
@@ -237,7 +237,7 @@ impl<T: Scalar> LaneShape<T> {
         of!(kind, lane_span(l, &question))
     }
 
-    /// The same by a call: one copy of code for all who ask single objects.
+    /// [`Self::span`] by a call: one copy of its code for all callers that test single objects.
     #[inline(never)]
     pub fn span_by_call<L: Lanes<Scalar = T>>(
         &self,

@@ -44,7 +44,7 @@ impl ScaledRay {
         }
     }
 
-    /// A t of the world ray in units of the scaled direction.
+    /// Converts t to units of the scaled direction.
     pub fn scaled_t<N: Number>(&self, t: f64) -> N {
         N::scaled(t, self.exponent)
     }
@@ -76,7 +76,6 @@ impl<N: Number> Frame<N> {
         }
     }
 
-    /// The inverse map's 3×4 matrix.
     pub fn inverse(&self) -> [[N; 4]; 3] {
         self.adjugate.each_ref().map(|row| {
             let entry = |j: usize| row[j].divided_by(&self.scale);
@@ -148,8 +147,16 @@ impl Ladder {
         })
     }
 
-    /// The first answer on the way up, and who gave it. The last tier always answers: the outer
-    /// `Option` is for the type checker alone, and callers read it as "no crossing".
+    /// World → canonical coordinates, every entry computed in double-double and rounded once.
+    pub fn inverse(&self) -> Affine {
+        let entries = self.double_double.inverse();
+        Affine {
+            rows: entries.map(|row| row.map(|entry| entry.to_f64())),
+        }
+    }
+
+    /// The first answer on the way up, and the tier that gave it. Exact numbers always answer, so that
+    /// it is never `None`; callers would read that as "no crossing".
     pub fn climb<Q: Question>(&self, ray: &ScaledRay, question: &Q) -> Option<(Q::Answer, Tier)> {
         if let Some(answer) = question.ask(&self.double.local(ray)) {
             return Some((answer, Tier::Double));

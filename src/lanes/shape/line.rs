@@ -19,7 +19,7 @@ pub struct LocalRay<N> {
 #[derive(Debug, Clone)]
 pub struct Fraction<N> {
     pub numerator: N,
-    /// The denominator d, positive.
+    /// Positive.
     pub denominator: N,
 }
 
@@ -44,10 +44,7 @@ impl<N: Number> Fraction<N> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Feature {
     /// x² + y² + z² = 1 for 3 dimensions, x² + y² = 1 for 2.
-    Round {
-        /// Number of coordinates in the sum.
-        dimensions: usize,
-    },
+    Round { dimensions: usize },
     /// The coordinate `axis` is +1 (`positive`) or −1.
     Face {
         axis: usize,
@@ -58,7 +55,7 @@ pub enum Feature {
     Flat,
 }
 
-/// Which crossing of the line with a surface; what it needs to be computed at any precision.
+/// A crossing of the line with a surface, identified so that any arithmetic can compute it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Crossing {
     pub feature: Feature,
@@ -73,14 +70,25 @@ pub struct Span {
     pub far: Crossing,
 }
 
+impl Span {
+    /// The crossings with the unit quadric of the first `dimensions` coordinates.
+    pub fn round(dimensions: usize) -> Self {
+        let [near, far] = [false, true].map(|leaving| Crossing {
+            feature: Feature::Round { dimensions },
+            leaving,
+        });
+        Self { near, far }
+    }
+}
+
 /// a t² + 2 b t + c, the radial form of a quadric along the line, with disc = b² − a c.
 #[derive(Debug, Clone)]
 pub struct Quadratic<N> {
-    /// Square of the direction.
+    /// Direction · direction.
     pub a: N,
     /// Origin · direction.
     pub b: N,
-    /// Square of the origin − scale².
+    /// Origin · origin − scale².
     pub c: N,
     pub discriminant: N,
 }
@@ -129,7 +137,7 @@ impl<N: Number> LocalRay<N> {
         )
     }
 
-    /// |coordinate `axis` at t| ≤ 1?
+    /// Whether |coordinate `axis` at t| ≤ 1.
     pub fn within(&self, axis: usize, t: &Fraction<N>) -> Option<bool> {
         let x = self.coordinate(axis, t);
         let reach = self.scale.times(&t.denominator);
@@ -159,14 +167,6 @@ impl Crossing {
     pub fn face(axis: usize, positive: bool, leaving: bool) -> Self {
         Self {
             feature: Feature::Face { axis, positive },
-            leaving,
-        }
-    }
-
-    /// The crossing with the first `dimensions` coordinates' unit quadric.
-    pub fn round(dimensions: usize, leaving: bool) -> Self {
-        Self {
-            feature: Feature::Round { dimensions },
             leaving,
         }
     }
@@ -213,7 +213,7 @@ fn root_against(
         (Some(Equal), Some(_), _) => Some(Equal),
         (Some(Greater), Some(Less), false) => Some(Greater),
         (Some(Greater), Some(Greater), true) => Some(Less),
-        // At the vertex with a positive value there are no roots: not asked.
+        // At the vertex with a positive value there are no roots, which callers exclude.
         _ => None,
     }
 }

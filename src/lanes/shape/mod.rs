@@ -5,7 +5,7 @@
 //! question "does the line meet it, and which crossing comes first" is a matter of signs of
 //! polynomials in the given numbers. It is written once, over [`Number`](crate::math::number::Number),
 //! without division or square root, and asked on a ladder: f64 with a forward error bound, then
-//! double-double with one, then exactly. The first rung that knows answers (Woop, Benthin, Wald
+//! double-double with one, then exactly. The first tier that can tell answers (Woop, Benthin, Wald
 //! 2013, JCGT 2(1), for the pattern of a fast test with a rare exact fallback).
 
 pub mod cube;
@@ -14,7 +14,6 @@ pub mod disk;
 pub mod flat;
 pub mod hierarchy;
 pub mod implicit;
-pub mod index;
 pub mod kind;
 pub mod ladder;
 pub mod lanes;
@@ -22,7 +21,6 @@ pub mod line;
 pub mod list;
 pub mod placed;
 pub mod plane;
-pub mod question;
 pub mod rectangle;
 pub mod resolve;
 pub mod slab;
@@ -73,18 +71,17 @@ impl Shape {
     }
 }
 
-/// What is known of the ray's start beyond its rounded coordinates.
+/// What is known of a ray's start beyond its rounded coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Start {
-    /// Nothing: the coordinates alone decide.
     #[default]
     Free,
-    /// The origin stands for a point of this very surface and the ray goes inward: the entering
-    /// crossing is the start, wherever rounding has put it, and only the leaving one counts. Flat
-    /// shapes have no inside and are not met again.
+    /// The origin stands for a point of this surface, and the ray goes inward: the entering crossing is
+    /// the start, to whatever place it was rounded, and only the leaving one counts. Flat shapes have no
+    /// inside and are not met again.
     OnSurfaceInward,
-    /// The shape cannot be met: the ray leaves this convex surface outward (or this flat one to
-    /// either side), or the shape is to be left out.
+    /// The ray does not meet the shape: it leaves this convex surface outward or this flat one to either
+    /// side, or the shape is left out.
     Excluded,
 }
 

@@ -4,14 +4,14 @@ use std::cmp::Ordering;
 
 use super::ladder::{Ladder, ScaledRay};
 use super::line::Crossing;
-use super::question::{FirstCrossing, Limits};
+use super::list::{FirstCrossing, Limits};
 use super::surd::Surd;
 use super::value;
 use super::{Hit, Query, Ray, ShapeKind, Start, Tally, Tier};
 use crate::math::affine::Affine;
 use crate::math::number::{Bounded, Number};
 
-/// The matrix maps space onto a plane or less (or has entries that are not finite).
+/// The matrix maps space onto a plane, a line or a point, or has entries that are not finite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the transform is not invertible")]
 pub struct SingularMatrix;
@@ -48,7 +48,7 @@ impl Placed {
     }
 
     /// The first crossing of the ray with the surface, entering or leaving, with t > `t_min`, or
-    /// t ≥ 0 where `t_min` is 0. `None` too for a ray that is not valid and for a t beyond f64.
+    /// t ≥ 0 where `t_min` is 0. `None` also for a ray that is not valid and for a t beyond f64.
     ///
     /// A line that only touches a closed set hits it, except that flat shapes are missed by lines
     /// in their own plane.
@@ -61,14 +61,6 @@ impl Placed {
         let (ray, limits) = query.scaled()?;
         let (crossing, tier) = self.first_crossing(&ray, &limits, start, tally)?;
         self.hit(&crossing, &ray, tier)
-    }
-
-    /// World → canonical coordinates, every entry computed in double-double and rounded once.
-    pub fn inverse(&self) -> Affine {
-        let entries = self.ladder.double_double.inverse();
-        Affine {
-            rows: entries.map(|row| row.map(|entry| entry.to_f64())),
-        }
     }
 
     pub(super) fn first_crossing(
@@ -97,8 +89,7 @@ impl Placed {
         Some((crossing?, tier))
     }
 
-    /// t, point and normal of a decided crossing; double-double unless its own bound says that it
-    /// is not sharp enough here.
+    /// The hit at a decided crossing, in double-double, or exactly where that is not sharp enough.
     pub fn hit(&self, crossing: &Crossing, ray: &ScaledRay, tier: Tier) -> Option<Hit> {
         let hit = value::hit(crossing, &self.ladder.double_double, ray, tier)
             .or_else(|| value::hit(crossing, &self.ladder.exact, ray, tier))?;

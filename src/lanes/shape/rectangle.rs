@@ -8,7 +8,6 @@ use super::line::{Fraction, LocalRay};
 use crate::math::lanes::{Lanes, Real};
 use crate::math::number::Number;
 
-/// z = 0, |x| ≤ 1, |y| ≤ 1.
 pub struct Rectangle;
 
 impl Flat for Rectangle {

@@ -1,4 +1,4 @@
-//! What lanes cannot decide: whole rays taken to the certified ladder.
+//! Rays that lanes cannot decide, taken to the certified ladder.
 
 use super::list::{Query, nearest, occluded};
 use super::{Hit, Placed, Ray, Start, Tally};
@@ -11,18 +11,19 @@ pub struct Resolver {
     priorities: Vec<u8>,
 }
 
-/// What a ray's start knows: it left this object, and to which side.
+/// The object that a ray leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Departure {
-    /// Index of the object; `u32::MAX` for none.
+    /// Its index; `u32::MAX` for none.
     pub object: u32,
+    /// Whether the ray goes into it.
     pub inward: bool,
 }
 
-/// A ray that lanes could not decide, and the objects that may have to do with it.
+/// A ray that lanes could not decide.
 #[derive(Debug, Clone, Copy)]
 pub struct UndecidedRay<'a> {
-    /// The objects to ask; `None` for all.
+    /// The objects that it may meet; `None` for all.
     pub candidates: Option<&'a [u32]>,
     pub ray: Ray,
     pub departure: Departure,
@@ -44,7 +45,7 @@ impl Resolver {
         self.priorities.push(priority);
     }
 
-    /// The shapes to ask: all, or those of the candidates.
+    /// The shapes to test, with their places in `placed`.
     fn chosen<'a>(
         &'a self,
         candidates: Option<&'a [u32]>,
@@ -68,7 +69,7 @@ impl Resolver {
             |i| self.priorities[i],
             tally,
         );
-        if let Some(index) = self.gone_into(departure)
+        if let Some(index) = self.entered(departure)
             && found.as_ref().is_none_or(|(found, _)| *found != index)
             && self.exit(index, &ray, tally).is_none()
         {
@@ -76,7 +77,9 @@ impl Resolver {
             return Some(Resolved {
                 t: 0.0,
                 object: departure.object,
-                part: placed.kind().part(placed.inverse().point(ray.origin)),
+                part: placed
+                    .kind()
+                    .part(placed.ladder.inverse().point(ray.origin)),
             });
         }
         let (index, hit) = found?;
@@ -87,14 +90,14 @@ impl Resolver {
         })
     }
 
-    /// The closed shape that a ray goes into from its own wall.
-    fn gone_into(&self, departure: Departure) -> Option<usize> {
+    /// The closed shape that a ray enters from a point of its surface.
+    fn entered(&self, departure: Departure) -> Option<usize> {
         let index = self.objects.binary_search(&departure.object).ok()?;
         (departure.inward && !self.placed[index].kind().is_flat()).then_some(index)
     }
 
-    /// Where it gets out, at t ≥ 0. Nowhere if rounding has put its start outside by more than the chord is
-    /// deep, along the wall; then it is out where it starts.
+    /// Where that ray leaves the shape, at t ≥ 0. Nowhere if its start is rounded to a place outside from
+    /// which the line misses; then it has left at the start.
     fn exit(&self, index: usize, ray: &Ray, tally: &mut Tally) -> Option<Hit> {
         self.placed[index].first_hit(ray, 0.0, Start::OnSurfaceInward, tally)
     }
@@ -123,8 +126,9 @@ impl Resolver {
         ) {
             return true;
         }
-        // What is beyond the exit from one's own shape is hidden, also where that is not ahead.
-        match self.gone_into(departure) {
+        // What lies beyond the exit from the shape that the ray enters is hidden, also where the exit is
+        // not ahead.
+        match self.entered(departure) {
             Some(index) if departure.object != except => {
                 let exit = self.exit(index, &ray, tally);
                 exit.is_none_or(|exit| exit.t < t_max)

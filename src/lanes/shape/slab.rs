@@ -85,9 +85,8 @@ impl<L: Lanes> LaneSlab<L> {
         let t1 = (-one - o) * inverse;
         let t2 = (one - o) * inverse;
         let largest = t1.abs().max(t2.abs());
-        // First order (e + |t| dd)/|d|, doubled for the rest while dd ≤ |d|/4; 5u for the arithmetic
-        // up to the rounded ends: ±1 − o, 1/d, their product and t ∓ error are each off by u, the fifth
-        // pays for the evaluation of the error.
+        // First order (e + |t| dd)/|d|, doubled for the rest while dd ≤ |d|/4. ±1 − o, 1/d, their
+        // product and the ends t ∓ error are each off by u; the fifth u pays for evaluating the error.
         let error = (largest.mul_add(dd, e) * inverse.abs()).mul_add(
             l.real(2.0),
             largest * l.real(5.0 * <L::Scalar as Scalar>::ROUNDOFF),
@@ -109,7 +108,7 @@ impl<L: Lanes> LaneSlab<L> {
     #[inline(always)]
     pub fn settle(&mut self, l: L, reach: L::Real) -> (L::Mask, L::Mask) {
         let one = l.real(1.0);
-        // The share beyond 1 pays for the rounding of drift and of o ± drift, many times over.
+        // A millionth pays for the rounding of drift and of o ± drift.
         let drift = (self.direction.abs() + self.direction_error).mul_add(reach, self.origin_error)
             * l.real(1.0 + 1e-6);
         let o = self.origin.abs();
@@ -122,8 +121,8 @@ impl<L: Lanes> LaneSlab<L> {
     }
 }
 
-/// Farthest |t| at which the line can be inside the canonical box: (|o|₁ + E + 1)/max(|dᵢ| − Dᵢ),
-/// infinite where the direction could be zero for all that is known; 3 for 1 pays for rounding.
+/// Farthest |t| at which the line can be inside the canonical box: (|o|₁ + E + 1)/max(|dᵢ| − Dᵢ), with
+/// 3 in place of 1 to pay for rounding; infinite where the direction may be zero.
 #[inline(always)]
 pub fn reach<L: Lanes>(
     l: L,

@@ -7,13 +7,12 @@ use glam::DVec3;
 use super::kind::{Canonical, Emitter, LaneQuestion, Length};
 use super::lanes::part::{Part, PartKind};
 use super::lanes::{Enclosure, LaneRay, LaneShape, LaneSpan, LaneSurface};
-use super::line::{Crossing, LocalRay, Span};
+use super::line::{LocalRay, Span};
 use crate::math::affine::Affine;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::number::{Number, dot};
 use crate::math::vec3::Vec3;
 
-/// x² + y² + z² = 1.
 pub struct Sphere;
 
 impl Canonical for Sphere {
@@ -27,14 +26,10 @@ impl Canonical for Sphere {
         along.length()
     }
 
-    /// The line meets the sphere if the discriminant of its radial form is not negative.
     fn span<N: Number>(ray: &LocalRay<N>) -> Option<Option<Span>> {
         let a = dot(&ray.direction, &ray.direction);
         let meets = ray.discriminant(3, &a).sign()? != Ordering::Less;
-        Some(meets.then(|| Span {
-            near: Crossing::round(3, false),
-            far: Crossing::round(3, true),
-        }))
+        Some(meets.then(|| Span::round(3)))
     }
 
     #[inline(always)]
@@ -45,13 +40,17 @@ impl Canonical for Sphere {
             asked,
             limit,
         } = *question;
-        match &shape.ball {
-            Some(ball) => {
-                let value = inlined!(|x: &L::Scalar| l.splat(*x));
-                ball_span(l, ball, value, ray, asked, limit)
-            }
-            None => ellipsoid_span(l, shape, ray),
+        if let Some(ball) = &shape.ball {
+            let value = inlined!(|x: &L::Scalar| l.splat(*x));
+            return ball_span(l, ball, value, ray, asked, limit);
         }
+        let o = shape.inverse.point(l, ray.origin);
+        let d = shape.inverse.vector(l, ray.direction);
+        let inverse_square = l.real(1.0) / d.length_squared();
+        let foot_t = -(o.dot(d) * inverse_square);
+        let squared = o.along(d, foot_t).length_squared();
+        let errors = shape.largest_errors(l, ray, 3);
+        round_span(l, foot_t, squared, inverse_square.sqrt(), errors)
     }
 
     fn parts<T: Scalar>(shape: &LaneShape<T>) -> Vec<Part<T>> {
@@ -74,14 +73,14 @@ impl Canonical for Sphere {
     }
 }
 
-/// A sphere whose placement only scales it alike along all axes and moves it; or several, each number
-/// a column with a place for each of them.
+/// A sphere that its placement moves and scales alike along all axes; or several, where T is a column
+/// with a place for each.
 #[derive(Debug, Clone, Copy)]
 pub struct Ball<T> {
     pub centre: [T; 3],
     pub radius: T,
     pub radius_squared: T,
-    /// 6u (|c| + r): what the centre's rounding and the ray's cost beside 6u max|o|.
+    /// 6u (|c| + r): the part of E r (see [`Foot::span`]) that does not depend on the ray.
     pub offset_error: T,
     /// 8/r.
     pub curvature: T,
@@ -107,10 +106,12 @@ impl<T: Scalar> Ball<T> {
         }
         let largest = x[3].abs().max(y[3].abs()).max(z[3].abs());
         let unit = 6.5 * T::ROUNDOFF;
-        // The largest e of `ball_span`, with |t₀| ≤ |o − c|, and twice that for its evaluation.
+        // e r of `Foot::span` is 6.5u (|t₀| + max|o| + max|c| + r), and |t₀| ≤ |o − c| is at most
+        // √3 (max|o| + max|c|): 1 + √3 < 3. Twice that pays for its evaluation.
         let e = 2.0 * unit * (3.0 * (reach + largest) + radius);
         let relative = 8.0 * e / radius + 10.0 * T::ROUNDOFF;
-        // c < −c_error wherever |f|² (1 − relative) > r² + 16e².
+        // c < −c_error of `Foot::span` wherever |f|² (1 − relative) > r² + 16e², with a relative error of
+        // 8e/r + 9u there and one u more here for the evaluation of |f|².
         let clear_squared = if relative < 0.5 {
             (radius * radius + 16.0 * e * e) / (1.0 - relative)
         } else {
@@ -120,6 +121,8 @@ impl<T: Scalar> Ball<T> {
             reach: T::from_f64(reach),
             // Eight unit roundoffs pay for this number's own rounding.
             clear_squared: T::from_f64(clear_squared * (1.0 + 8.0 * T::ROUNDOFF)),
+            // Half a chord is at most r. `Foot::span` is off by 40u r + 4e, and by 9u (|t₀| + r) where
+            // 9u |t₀| < e; the rest of 60u and 6e pays for rounding this number.
             clear: T::from_f64(radius * (1.0 + 60.0 * T::ROUNDOFF) + 6.0 * e),
             centre: [x[3], y[3], z[3]].map(T::from_f64),
             radius: T::from_f64(radius),
@@ -138,9 +141,16 @@ impl<T: Scalar> Ball<T> {
 /// Let e = E + |t₀| D with t₀ the foot's parameter, and q = D/|d|, the relative error of the
 /// direction, below ⅛. The foot f moves across the ray by δo + t₀ δd, at most √3 e; and along it,
 /// because turning the ray moves the foot of a line that passes the centre at distance |f|, by at
-/// most 4e + 3q|f| (√3/(1 − √3/8)² = 2.8), which enters |f|² only squared and, by f · δd, once
-/// more times q: so |f|² is within (8e + 8u + 64q²) max(1, |f|²) + 16 e² of its exact value. Where
-/// q ≥ ⅛ that is more than 1 and more than |f|², and nothing is decided.
+/// most a = 2.8e + 3q|f| (√3/(1 − √3/8)² = 2.8). So |f|² changes by 2√3 e|f| + 3e² + a² and, as f · δd
+/// is not 0, by 2√3 q|f| a, which for q < ⅛ is less than (8e + 64q²) max(1, |f|²) + 16e². Rounding adds
+/// 2u for f, 3u for its squares and u for 1 − |f|²; 8u pay for the evaluation of the bound too. Where
+/// q ≥ ⅛ the bound is more than 1 and more than |f|², and nothing is decided.
+///
+/// The crossings t₀ ± √c/|d| with c = 1 − |f|² matter where |f| and √c are below 1. δt₀ is at most
+/// (4e + 3q|f|)/|d|: 1.2e, at least 7u max|oᵢ|, pays for the rounding of o · d, 3√3 u max|oᵢ| |d|. δ√c is
+/// at most δc/√c as δc < c; 1/|d| is off by 3q of itself, which makes 6q with the 3q of t₀. Rounding:
+/// 1/|d|² is off by 4u and its root by 3u, t₀ and √c/|d| by 5u, their sum by one more and its ends by
+/// another; 9u pay for the evaluation of the bound too.
 #[inline(always)]
 pub fn round_span<L: Lanes>(
     l: L,
@@ -157,8 +167,6 @@ pub fn round_span<L: Lanes>(
     let c_error = (e * e).mul_add(l.real(16.0), relative * squared.max(l.real(1.0)));
     let root = c.max(l.real(0.0)).sqrt();
     let half = root * inverse_length;
-    // δt₀ ≤ (4e + 3q|f|)/|d|, δ√c ≤ δc/√c when c > δc, and 1/|d| is off by 3q of itself, where
-    // |f| and √c are below 1; then rounding.
     let along = q.mul_add(l.real(6.0), e * l.real(4.0));
     let error =
         (c_error / root + along).mul_add(inverse_length, (foot_t.abs() + half) * l.real(9.0 * u));
@@ -171,22 +179,8 @@ pub fn round_span<L: Lanes>(
     }
 }
 
-#[inline(always)]
-fn ellipsoid_span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> LaneSpan<L> {
-    let o = shape.inverse.point(l, ray.origin);
-    let d = shape.inverse.vector(l, ray.direction);
-    let inverse_square = l.real(1.0) / d.length_squared();
-    let foot_t = -(o.dot(d) * inverse_square);
-    let squared = o.along(d, foot_t).length_squared();
-    let errors = shape.largest_errors(l, ray, 3);
-    round_span(l, foot_t, squared, inverse_square.sqrt(), errors)
-}
-
-/// The same about the centre in world units, for balls of which `value` takes each lane's number from
-/// a column.
-///
-/// Packets that surely pass the ball, leave it behind or end before it are let go by bounds that
-/// hold for all usual rays.
+/// Where lines meet balls; `value` takes each lane's number from a column. Packets that surely pass
+/// the ball, leave it behind or end before it are let go by bounds that hold for all usual rays.
 #[inline(always)]
 pub fn ball_span<L: Lanes, C>(
     l: L,
@@ -246,8 +240,9 @@ impl<L: Lanes> Foot<L> {
     }
 
     /// Where the line meets the ball. Canonical coordinates would be those about the centre over r,
-    /// so that the bounds of `ellipsoid_span`, times r or r², hold with E r = 6u (max|o| + |c| + r),
-    /// D r = 6u, and q = D r, where 64q² is less than u.
+    /// so that the bounds of [`round_span`], times r or r², hold with E r = 6u (max|o| + |c| + r),
+    /// D r = 6u and q = D r, both 6u evaluated as 6.5u (see [`LaneShape::new`]): 64q² is less than u,
+    /// which makes 9u with the 8u there, and 6q is less than 40u.
     #[inline(always)]
     pub fn span<C>(
         &self,

@@ -28,7 +28,7 @@ impl SignedRoot {
     }
 }
 
-/// The sign; exact numbers always have one.
+/// Exact numbers always have a sign.
 fn order(x: &Exact) -> Ordering {
     x.sign().unwrap_or(Ordering::Equal)
 }

@@ -1,4 +1,4 @@
-//! The numbers of a decided crossing: t, point, normal, to the last place or so.
+//! t, point and normal of a decided crossing, rounded once.
 
 use glam::DVec3;
 
@@ -39,8 +39,7 @@ fn within<N: Number>(v: &[N; 3], bound: f64) -> bool {
     v.iter().all(|x| x.error() <= bound)
 }
 
-/// The hit at a crossing, or `None` where this kind of number is not sharp enough; `tier` has decided
-/// that there is one.
+/// The hit at a crossing that `tier` has decided; `None` where this kind of number is not sharp enough.
 pub fn hit<N: Number>(
     crossing: &Crossing,
     frame: &Frame<N>,
@@ -53,7 +52,7 @@ pub fn hit<N: Number>(
     if !sharp_t {
         return None;
     }
-    // Canonical coordinates times the scale: their common factor is of no concern to the normal.
+    // Canonical coordinates times the scale, a common factor that does not change the normal.
     let at = [0, 1, 2].map(|i| line.origin[i].plus(&line.direction[i].times(&t)));
     let mut local = at.each_ref().map(|x| x.divided_by(&line.scale));
     let mut outward = [0.0; 3].map(N::of);

@@ -99,7 +99,7 @@ impl Site {
         let object = &scene.objects[index].value;
         let to_world = about_camera(scene, object);
         let placed = Placed::new(ShapeKind::Plane, &to_world).ok()?;
-        let inverse = placed.inverse();
+        let inverse = placed.ladder.inverse();
         let finite = inverse.rows.iter().flatten().all(|x| x.is_finite());
         finite.then(|| Self {
             index,

@@ -1,22 +1,22 @@
 //! How objects are shared out among the children of a node.
 
-use super::{Bounds, Item};
+use super::{Bounds, Item, WIDTH};
 use crate::shape::lanes::balls::MOST;
 
 /// Slices of the centres' range in which splits are sought. Finer ones change the expected cost
 /// little (Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007, section 3).
 const BINS: usize = 16;
 
-/// Some of the objects, which make one child.
-struct Part<'a> {
+/// Objects that make one child.
+struct Group<'a> {
     objects: &'a mut [Item],
     /// Whether one test answers for all.
     one_test: bool,
-    /// A guess at the cost of visiting it: the share of rays times the tests.
+    /// Estimated cost: the area, to which the number of rays is proportional, times the objects.
     cost: f64,
 }
 
-impl<'a> Part<'a> {
+impl<'a> Group<'a> {
     fn new(objects: &'a mut [Item], is_ball: impl Fn(u32) -> bool) -> Self {
         let one_test = match objects {
             [] | [_] => true,
@@ -30,33 +30,27 @@ impl<'a> Part<'a> {
     }
 }
 
-/// How much dearer than the cheapest split one may be that fills the nodes below. Full nodes are up
-/// to half as many as those filled by chance, which are half full on average where they are lowest.
+/// Largest cost, over that of the cheapest split, at which one is taken that fills the nodes below.
+/// Otherwise the lowest nodes are half full on average, and so up to twice as many.
 const FULL: f64 = 1.25;
 
-/// The largest power of `width` below a number: how many objects a full child has.
-fn full_child(width: usize, objects: usize) -> usize {
-    let mut full = 1;
-    while full * width < objects {
-        full *= width;
-    }
-    full
-}
-
-/// Up to `width` parts, none of them empty: of the parts so far that are more than a full child, the
+/// Up to [`WIDTH`] parts, none of them empty: of the parts so far that are more than a full child, the
 /// one that costs most is split where the surface-area heuristic finds it cheapest, or, where not
 /// `free`, the largest is halved.
 pub fn split(
     objects: &mut [Item],
-    width: usize,
     free: bool,
     is_ball: impl Fn(u32) -> bool + Copy,
 ) -> Vec<&mut [Item]> {
-    let full = full_child(width, objects.len());
-    let mut parts = vec![Part::new(objects, is_ball)];
-    while parts.len() < width {
-        let is_done = |part: &Part<'_>| part.one_test || (free && part.objects.len() <= full);
-        let weight = |part: &Part<'_>| match (is_done(part), free) {
+    // A full child has the largest power of WIDTH below the number of objects.
+    let mut full = 1;
+    while full * WIDTH < objects.len() {
+        full *= WIDTH;
+    }
+    let mut parts = vec![Group::new(objects, is_ball)];
+    while parts.len() < WIDTH {
+        let is_done = |part: &Group<'_>| part.one_test || (free && part.objects.len() <= full);
+        let weight = |part: &Group<'_>| match (is_done(part), free) {
             (true, _) => -1.0,
             (_, true) => part.cost,
             (_, false) => part.objects.len() as f64,
@@ -69,11 +63,11 @@ pub fn split(
         if is_done(&parts[largest]) {
             break;
         }
-        let Part { objects, .. } = parts.swap_remove(largest);
+        let Group { objects, .. } = parts.swap_remove(largest);
         let middle = if free { cheapest(objects, full) } else { None };
         let middle = middle.unwrap_or_else(|| halved(objects));
         let (a, b) = objects.split_at_mut(middle);
-        parts.extend([Part::new(a, is_ball), Part::new(b, is_ball)]);
+        parts.extend([Group::new(a, is_ball), Group::new(b, is_ball)]);
     }
     let parts = parts.into_iter().map(|part| part.objects);
     parts.filter(|part| !part.is_empty()).collect()
@@ -85,9 +79,9 @@ fn centre(item: &Item, axis: usize) -> f64 {
 }
 
 /// Orders the objects so that the first ones, whose number is returned, are one side of the split
-/// at the edge of a bin with the least expected tests, Σ area · count (Goldsmith and Salmon,
+/// at the edge of a bin with the lowest cost, Σ area · count (Goldsmith and Salmon,
 /// "Automatic Creation of Object Hierarchies for Ray Tracing", 1987; MacDonald and Booth 1990);
-/// or at a multiple of `full` along the same axis that is hardly worse; `None` where all centres
+/// or at a multiple of `full` along the same axis that costs hardly more; `None` where all centres
 /// coincide.
 fn cheapest(objects: &mut [Item], full: usize) -> Option<usize> {
     let mut best: Option<(f64, usize, f64, f64, usize)> = None;
@@ -135,7 +129,7 @@ fn cheapest(objects: &mut [Item], full: usize) -> Option<usize> {
     Some(objects.partition_point(|item| bin(item, axis, low, scale) < edge))
 }
 
-/// The cheapest split of ordered objects at a multiple of `full`, and its expected tests.
+/// The cost of the cheapest split of ordered objects at a multiple of `full`, and the split.
 fn filling(objects: &[Item], full: usize) -> Option<(f64, usize)> {
     let blocks: Vec<Bounds> = objects.chunks(full).map(Bounds::around).collect();
     let mut above = vec![Bounds::NOTHING; blocks.len() + 1];

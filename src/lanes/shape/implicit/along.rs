@@ -1,4 +1,4 @@
-//! A field along a line, enclosed.
+//! Enclosures of a field along a line.
 
 use crate::field::interval_program::{IntervalProgram, Side};
 use crate::math::instructions::DoubleLanes;
@@ -13,7 +13,6 @@ use crate::root::interval::{Enclosed, PIECES, Pieces};
 pub struct EnclosedLine {
     /// Where s is 0.
     pub base: [[f64; 2]; 3],
-    /// Its change with s.
     pub direction: [[f64; 2]; 3],
 }
 
@@ -46,7 +45,7 @@ impl<'a, L: DoubleLanes> Along<'a, L> {
             line,
             values: Vec::with_capacity(program.registers()),
             jets: Vec::with_capacity(program.registers()),
-            // Few fields jump.
+            // Used by the few fields that jump.
             sides: Vec::new(),
         }
     }
@@ -170,7 +169,7 @@ impl<L: DoubleLanes> Enclosed for Along<'_, L> {
     }
 }
 
-/// The boundary at which code for the instruction set begins.
+/// Where code for the instruction set begins.
 #[inline(never)]
 fn stage<L: Lanes>(l: L, work: impl FnOnce()) {
     l.vectorize(work);

@@ -1,8 +1,9 @@
-//! The report's own method for implicit surfaces, in scalar f64.
+//! Implicit surfaces by changes of sign, in scalar f64: equal steps along the clipped ray, then
+//! bisection.
 //!
-//! Equal steps along the clipped ray, a change of sign, bisection. It proves nothing: roots that
-//! do not change the sign are missed, and so is a pair of roots within one step. It stays as the
-//! yardstick for certified finders.
+//! This proves nothing: roots that do not change the sign are missed, and so is a pair of roots within
+//! one step. It is the yardstick for certified finders, which take points and normals of their hits
+//! from here.
 
 use glam::DVec3;
 
@@ -22,33 +23,28 @@ pub struct SteppingFinder {
     field: Field,
     inside: [DVec3; 2],
     steps: u32,
-    ladder: Ladder,
+    pub ladder: Ladder,
     to_world: Affine,
 }
 
 /// Where a ray meets an implicit surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImplicitHit {
-    /// Where on the ray, in units of its direction; finite.
+    /// In units of the ray's direction; finite.
     pub t: f64,
     /// World coordinates.
     pub point: DVec3,
-    /// Unit outward normal in the world; see [`normal`] for where the gradient
-    /// vanishes.
+    /// Unit outward normal in the world; see [`normal`] for where the gradient vanishes.
     pub normal: Option<DVec3>,
-    /// Bounds of t; the estimate twice where nothing is proved.
+    /// Bounds of t; t twice where nothing is proved.
     pub enclosure: [f64; 2],
-    /// How many times it is a root along the ray, where that is known.
+    /// Multiplicity of the root along the ray, where it is known.
     pub multiplicity: Option<u32>,
     /// What has decided; `None` where nothing is proved.
     pub tier: Option<Tier>,
 }
 
 impl SteppingFinder {
-    /// Places the surface.
-    ///
-    /// # Errors
-    /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
     pub fn new(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
         Ok(Self {
             field: Field::new(&implicit.field.tape),
@@ -91,7 +87,7 @@ impl SteppingFinder {
         self.normal(line.at(t * power_of_two(ray.exponent())), line.direction)
     }
 
-    /// The unit outward normal, in the world, of a hit within this far of t, if f64 is certain of it.
+    /// The unit outward normal, in the world, of a hit at t ± `within`, where f64 is certain of it.
     pub fn certain_normal(&self, ray: &Ray, t: f64, within: f64) -> Option<DVec3> {
         let scaled = ScaledRay::new(ray);
         let line = self.ladder.double_double.local(&scaled);
@@ -112,8 +108,8 @@ impl SteppingFinder {
     }
 
     /// The point, in the world, of a hit at t. From a far origin o + t d is off by the rounding of its
-    /// large terms, so it is moved back onto the surface by a Newton step along the gradient; where
-    /// the gradient says nothing the point stays where it is.
+    /// large terms, so it is moved onto the surface by a Newton step along the gradient, unless that is
+    /// longer than rounding explains.
     pub fn point_at(&self, ray: &Ray, t: f64) -> DVec3 {
         let plain = ray.at(t);
         let scaled = ScaledRay::new(ray);
@@ -122,7 +118,7 @@ impl SteppingFinder {
         let local = line.at(scaled_t);
         let gradient = self.field.gradient(local);
         let step = gradient * (self.field.value(local) / gradient.length_squared());
-        // Eight unit roundoffs of the terms pay for their own rounding, that of t and of the map.
+        // o, d, t, their product and sum and the map are each off by u of the terms: 8u with some room.
         let terms = line.origin.abs() + (line.direction * scaled_t).abs();
         let blur = 4.0 * f64::EPSILON * terms.max_element();
         if step.length() <= blur {
@@ -144,7 +140,7 @@ impl SteppingFinder {
         }
     }
 
-    /// Of the ends of a change of sign, between which no f64 lies, the one with the smaller |field|.
+    /// Of the neighbouring f64 between which the sign changes, the one with the smaller |field|.
     fn first_root(&self, line: &Ray, limits: [f64; 2], from_zero: bool) -> Option<f64> {
         let [t_min, t_max] = limits;
         let [near, far] = self.clip(line, limits)?;

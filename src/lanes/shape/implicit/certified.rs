@@ -1,7 +1,7 @@
 //! Polynomial surfaces with proved hits, in tiers: f64 lanes, double-double lanes, exact integers.
 //!
-//! The ray is clipped to a box outside of which the surface has proved not to be, the field formed
-//! as Bernstein coefficients between the two ends, and the first root isolated with certain signs
+//! The ray is clipped to a box outside of which the surface is proved not to lie, the field expanded
+//! into Bernstein coefficients between the two ends, and the first root isolated with certain signs
 //! ([`crate::root::bernstein`]). One number a ray bounds the coefficients' errors: a constant of
 //! the surface (see [`crate::field::program::bounds`]), and another one times the distance between the
 //! rounded local ends and the exact ones. Rays that f64 leaves undecided are asked again in
@@ -22,12 +22,10 @@ use crate::math::packet::each;
 use crate::math::words::{Pair, Plain, Row};
 use crate::root::exact::ExactRoot;
 use crate::shape::{Ray, Tier};
-use exact::ExactStart;
 
-/// Lanes of a packet.
 pub const WIDTH: usize = 8;
 
-/// Eight rays and where on them hits count.
+/// Eight rays and their limits.
 #[derive(Debug, Clone, Copy)]
 pub struct Packet {
     /// World coordinates, by axis.
@@ -38,9 +36,9 @@ pub struct Packet {
     pub t_min: [f64; WIDTH],
     /// Hits count before this.
     pub t_max: [f64; WIDTH],
-    /// Rays that are asked about, by bit.
+    /// Rays to test, by bit.
     pub active: u32,
-    /// Rays that leave this very surface: `t_min` is 0 and the root there does not count.
+    /// Rays that leave this surface: `t_min` is 0 and the root there does not count.
     pub leaving: u32,
     /// Unit roundoff with which the origins of these were rounded.
     pub roundoff: f64,
@@ -86,18 +84,17 @@ impl Packet {
 pub struct Answers {
     pub found: u32,
     pub absent: u32,
-    /// Its t, in units of the direction.
+    /// In units of the direction.
     pub t: [f64; WIDTH],
-    /// It is not before this.
+    /// Bounds of t.
     pub low: [f64; WIDTH],
-    /// Nor after this.
     pub high: [f64; WIDTH],
-    /// How many times it is a root; 0 where that is not known.
+    /// Multiplicity of the root; 0 where it is not known.
     pub multiplicity: [u32; WIDTH],
     pub tiers: [Tier; WIDTH],
     /// Lanes whose enclosure is wider than [`SHARP`] times the clipped stretch.
     blurred: u32,
-    /// Where the search ended in undecided lanes.
+    /// Where the search ended in undecided lanes, and the length of the clipped ray.
     doubt: [f64; WIDTH],
     stretch: [f64; WIDTH],
 }
@@ -116,7 +113,7 @@ pub struct Effort {
 
 #[derive(Debug)]
 pub struct Workspace {
-    /// The instruction set of their kernels; the answers are the same with each.
+    /// The answers are the same with each.
     pub instructions: Instructions,
     rows: Vec<Row>,
 }
@@ -195,9 +192,9 @@ impl Certified {
         answers
     }
 
-    /// The first hit of a ray by exact arithmetic alone, as the truth that others are judged by.
+    /// The first hit of a ray by exact arithmetic alone.
     pub fn exactly(&self, ray: &Ray, limits: [f64; 2]) -> Option<ExactRoot> {
-        exact::first_hit(self, ray, limits, ExactStart::Free, f64::NAN)
+        exact::first_hit(self, ray, limits, None, f64::NAN)
     }
 
     fn in_lanes(
@@ -221,9 +218,9 @@ impl Certified {
     }
 
     /// Tries whether the first hit of an undecided ray is a multiple root at a t of few bits close
-    /// to where the search ended, as where a ray passes through a node. Whether it is a root, and
-    /// how many times, is decided exactly; that none comes before it by signs of what is left when
-    /// it is divided out. Returns whether the ray is decided.
+    /// to where the search ended, as where a ray passes through a node. Its multiplicity is decided
+    /// exactly; that no root comes before it, by signs of the polynomial with this root divided out.
+    /// Returns whether the ray is decided.
     #[cold]
     fn multiple_root(
         &self,
@@ -287,11 +284,7 @@ impl Certified {
     #[cold]
     fn decide(&self, packet: &Packet, lane: usize, answers: &mut Answers) {
         let ray = packet.ray(lane);
-        let start = if packet.leaving >> lane & 1 == 1 {
-            ExactStart::OnSurface(packet.roundoff)
-        } else {
-            ExactStart::Free
-        };
+        let start = (packet.leaving >> lane & 1 == 1).then_some(packet.roundoff);
         let limits = [packet.t_min[lane], packet.t_max[lane]];
         let bit = 1 << lane;
         match exact::first_hit(self, &ray, limits, start, answers.doubt[lane]) {
@@ -325,11 +318,11 @@ impl Answers {
     }
 }
 
-/// How far from where a search ended a root is guessed, relative to the stretch: a double root is
-/// found to half of a double-double's digits and less, a triple one to a third.
+/// Distances, relative to the stretch, within which a root is guessed near the end of a search: a double
+/// root is found to at most half of a double-double's digits, a triple one to a third.
 const GUESS_WIDTHS: [f64; 2] = [1.0 / (1u64 << 34) as f64, 1.0 / (1u64 << 22) as f64];
 
-/// The number of fewest bits within an interval of finite numbers.
+/// The number with the fewest bits in an interval.
 fn simplest(low: f64, high: f64) -> Option<f64> {
     if !(low < high && low.is_finite() && high.is_finite()) {
         return None;

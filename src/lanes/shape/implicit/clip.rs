@@ -1,4 +1,4 @@
-//! The part of a ray within a box, enclosed: what finders that work with intervals start from.
+//! Bounds of the part of a ray within a box, from which finders by enclosures start.
 
 use std::cmp::Ordering;
 
@@ -18,7 +18,7 @@ pub struct Clipped {
     pub start: f64,
     /// The line for s ≥ 0.
     pub line: EnclosedLine,
-    /// Bounds of t where the stretch begins: it holds what lies beyond the second.
+    /// Bounds of t where the stretch begins.
     pub near: [f64; 2],
     /// Bounds of t where the stretch ends.
     pub far: [f64; 2],
@@ -76,7 +76,7 @@ pub fn clipped(
     })
 }
 
-/// The quotients; zero stays exact, which division alone does not see.
+/// Quotients, in which zero stays exact; division alone would give it an error.
 fn divided(v: &[DoubleDouble; 3], scale: &DoubleDouble) -> [DoubleDouble; 3] {
     v.each_ref().map(|x| match x.sign() {
         Some(Ordering::Equal) => DoubleDouble::of(0.0),
@@ -96,7 +96,7 @@ fn bounds(x: &DoubleDouble) -> [f64; 2] {
         return [middle; 2];
     }
     let radius = around(&rest);
-    // Within one step of the leading word the sign of the rest tells on which side it is.
+    // Within one step of the leading word, the sign of the rest tells on which side x lies.
     let step = middle.next_up() - middle;
     let low = match rest.sign() {
         Some(Ordering::Greater) => middle,

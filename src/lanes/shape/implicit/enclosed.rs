@@ -9,7 +9,6 @@ use super::clip::{Clipped, clipped};
 use crate::field::interval_program::IntervalProgram;
 use crate::field::over_box::survey;
 use crate::field::tape::Tape;
-use crate::math::affine::Affine;
 use crate::math::double_double::DoubleDouble;
 use crate::math::instructions::{DoubleLanes, Instructions, Job};
 use crate::math::interval::ScalarInterval;
@@ -20,13 +19,13 @@ use crate::root::interval::{self, Search, departure};
 use crate::root::{Outcome, Root, sphere_trace};
 use crate::shape::ladder::{Ladder, ScaledRay};
 use crate::shape::line::LocalRay;
-use crate::shape::{Ray, SingularMatrix, Tier};
+use crate::shape::{Ray, Tier};
 
-/// Most evaluations for one ray: well above what separated zeros need (some tens), and about a
+/// Most evaluations for one ray: well above what separated zeros take (some tens), and about a
 /// millisecond for a field of a dozen operations.
 pub const WORK_BOUND: u32 = 2_000;
 
-/// A field made ready for interval subdivision, as its factors.
+/// The factors of a field, as interval programs.
 #[derive(Debug, Clone)]
 pub struct EnclosedField {
     factors: Vec<EnclosedFactor>,
@@ -65,8 +64,8 @@ impl EnclosedField {
         Self { factors }
     }
 
-    /// With bounds of the factors' gradients over a box, which sphere tracing can use besides
-    /// those along the ray. The bound of a product is none of its factors.
+    /// With bounds of the factors' gradients over a box, which sphere tracing can use besides those along
+    /// the ray.
     pub fn surveyed(mut self, inside: &[DVec3; 2]) -> Self {
         for factor in &mut self.factors {
             factor.steepness = survey(Instructions::best(), &factor.program, inside).steepness;
@@ -95,13 +94,13 @@ impl EnclosedField {
 
 #[derive(Debug, Clone, Copy)]
 pub struct Searching {
-    /// In which instructions; the zeros are the same with each.
+    /// The zeros are the same with each.
     pub instructions: Instructions,
     pub method: Method,
     /// Most evaluations for each factor.
     pub bound: u32,
-    /// For a ray that leaves this very surface at t = 0: how far each local coordinate of its
-    /// start may be from the true hit's. The zero there does not count.
+    /// For a ray that leaves this surface at t = 0, where the zero does not count: how far each local
+    /// coordinate of its start may be from the exact hit's.
     pub leaving: Option<f64>,
 }
 
@@ -208,8 +207,7 @@ fn point(x: f64) -> ScalarInterval {
     ScalarInterval::point(One, x)
 }
 
-/// The earlier of the first zeros of two factors; which it is stays open where the enclosures
-/// overlap.
+/// The earlier of the first zeros of two factors; where the enclosures overlap, what holds for both.
 fn earlier(a: &Root, b: &Root) -> Root {
     if a.enclosure[1] < b.enclosure[0] {
         return *a;
@@ -257,15 +255,8 @@ pub struct EnclosedPacket {
 }
 
 impl EnclosedPacket {
-    /// # Errors
-    /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
-    pub fn new(
-        implicit: &Implicit,
-        to_world: &Affine,
-        method: Method,
-    ) -> Result<Self, SingularMatrix> {
-        let ladder = Ladder::new(to_world)?;
-        // Two sums and three roundings of entries: half of this pays for them.
+    pub fn new(implicit: &Implicit, ladder: &Ladder, method: Method) -> Self {
+        // Entries rounded by ½ε and two sums are off by 1.5ε; 8ε leave room.
         let row = |row: &[DoubleDouble; 4]| {
             let sizes = row[..3].iter().map(|x| x.to_f64().abs());
             sizes.sum::<f64>() * (1.0 + 8.0 * f64::EPSILON)
@@ -273,7 +264,7 @@ impl EnclosedPacket {
         let entries = ladder.double_double.inverse();
         let largest_row = entries.iter().map(row).fold(0.0, f64::max);
         let field = EnclosedField::new(&implicit.field.tape);
-        Ok(Self {
+        Self {
             field: match method {
                 Method::Subdivision => field,
                 Method::Spheres => field.surveyed(&implicit.inside),
@@ -281,50 +272,40 @@ impl EnclosedPacket {
             inside: implicit.inside,
             method,
             largest_row,
-            ladder,
-        })
+            ladder: ladder.clone(),
+        }
     }
 
     pub fn first_hits(&self, instructions: Instructions, packet: &Packet) -> Answers {
         let mut answers = Answers::default();
         for lane in each(packet.active) {
-            self.answer(instructions, packet, lane, &mut answers);
-        }
-        answers
-    }
-
-    fn answer(
-        &self,
-        instructions: Instructions,
-        packet: &Packet,
-        lane: usize,
-        answers: &mut Answers,
-    ) {
-        let ray = packet.ray(lane);
-        let leaving = packet.leaving >> lane & 1 == 1;
-        // The point of a hit is rounded some times (distance, product, sum, the way back): 2³
-        // units of its largest coordinate, and as much again for the way there.
-        let extent = ray.origin.abs().max_element();
-        let shift = 16.0 * packet.roundoff * extent * self.largest_row;
-        let searching = Searching {
-            instructions,
-            method: self.method,
-            bound: WORK_BOUND,
-            leaving: leaving.then_some(shift),
-        };
-        let bit = 1 << lane;
-        match self.first_hit(&ray, [packet.t_min[lane], packet.t_max[lane]], &searching) {
-            Outcome::Undecided => {}
-            Outcome::Absent => answers.absent |= bit,
-            Outcome::Found(root) => {
-                let [low, high] = root.enclosure;
-                answers.found |= bit;
-                answers.t[lane] = low + 0.5 * (high - low);
-                [answers.low[lane], answers.high[lane]] = [low, high];
-                answers.multiplicity[lane] = root.multiplicity.unwrap_or(0);
-                answers.tiers[lane] = Tier::Double;
+            let ray = packet.ray(lane);
+            // Up to 2³ roundings of the largest coordinate on the way to the point of a hit (distance,
+            // product, sum, map), and as many on the way back.
+            let extent = ray.origin.abs().max_element();
+            let shift = 16.0 * packet.roundoff * extent * self.largest_row;
+            let leaving = packet.leaving >> lane & 1 == 1;
+            let searching = Searching {
+                instructions,
+                method: self.method,
+                bound: WORK_BOUND,
+                leaving: leaving.then_some(shift),
+            };
+            let bit = 1 << lane;
+            match self.first_hit(&ray, [packet.t_min[lane], packet.t_max[lane]], &searching) {
+                Outcome::Undecided => {}
+                Outcome::Absent => answers.absent |= bit,
+                Outcome::Found(root) => {
+                    let [low, high] = root.enclosure;
+                    answers.found |= bit;
+                    answers.t[lane] = low + 0.5 * (high - low);
+                    [answers.low[lane], answers.high[lane]] = [low, high];
+                    answers.multiplicity[lane] = root.multiplicity.unwrap_or(0);
+                    answers.tiers[lane] = Tier::Double;
+                }
             }
         }
+        answers
     }
 
     /// The first hit of a world ray, t in units of its direction.

@@ -16,7 +16,7 @@ use crate::field::expression::Expression;
 /// The zeros of a field within a box.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Implicit {
-    /// The named surface it is, if it is one.
+    /// Its name in scene files, where it is a named surface.
     pub name: Option<&'static str>,
     /// The field, negative inside, in object coordinates.
     pub field: Arc<Expression>,
@@ -25,7 +25,7 @@ pub struct Implicit {
     /// Where the box cuts the inside of the surface, its faces belong to the surface.
     pub closed: bool,
     pub finder: FinderChoice,
-    /// Steps along the clipped ray, for the finder that steps.
+    /// Steps along the clipped ray, for [`FinderChoice::SignChange`].
     pub steps: u32,
 }
 
@@ -33,7 +33,7 @@ pub struct Implicit {
 pub enum FinderChoice {
     #[default]
     Auto,
-    /// Equal steps, a change of sign, bisection: the report's method, which proves nothing.
+    /// See [`baseline`].
     SignChange,
     /// Steps as long as a proved Lipschitz bound allows.
     SphereTrace,
@@ -44,7 +44,7 @@ pub enum FinderChoice {
 }
 
 impl FinderChoice {
-    /// All finders by the names they have in scene files.
+    /// By name in scene files.
     pub const NAMES: &'static [(&'static str, Self)] = &[
         ("auto", Self::Auto),
         ("sign-change", Self::SignChange),

@@ -1,4 +1,4 @@
-//! An implicit surface in the world and a ray's first hit with it, by the finder of its choice.
+//! An implicit surface placed in the world, and a ray's first hit with it by the surface's finder.
 
 pub use super::baseline::ImplicitHit;
 use super::baseline::SteppingFinder;
@@ -6,13 +6,13 @@ use super::certified::{Answers, Certified, Effort, Packet, Workspace};
 use super::enclosed::{EnclosedPacket, Method};
 use crate::math::affine::Affine;
 use crate::shape::implicit::{FinderChoice, Implicit};
+use crate::shape::ladder::Ladder;
 use crate::shape::{Query, Ray, SingularMatrix, Tally};
 
 use glam::DVec3;
 
 #[derive(Debug, Clone)]
 pub enum Finder {
-    /// Equal steps and bisection: proves nothing.
     SignChange,
     Polynomial {
         certified: Box<Certified>,
@@ -26,32 +26,29 @@ pub enum Finder {
 impl Finder {
     /// The finder that a surface asks for; `auto` is certified isolation for polynomials, and
     /// interval subdivision for other fields.
-    ///
-    /// # Errors
-    /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
-    pub fn new(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
+    pub fn new(implicit: &Implicit, ladder: &Ladder) -> Self {
         let enclosed = |method| {
-            let placed = EnclosedPacket::new(implicit, to_world, method)?;
-            Ok(Self::Enclosed(Box::new(placed)))
+            let placed = EnclosedPacket::new(implicit, ladder, method);
+            Self::Enclosed(Box::new(placed))
         };
         let exact = match implicit.finder {
             FinderChoice::Auto => true,
             FinderChoice::Polynomial => false,
-            FinderChoice::SignChange => return Ok(Self::SignChange),
+            FinderChoice::SignChange => return Self::SignChange,
             FinderChoice::Interval => return enclosed(Method::Subdivision),
             FinderChoice::SphereTrace => return enclosed(Method::Spheres),
         };
-        match Certified::new(&implicit.field.tape, implicit.inside, to_world)? {
-            Some(certified) => Ok(Self::Polynomial {
+        match Certified::new(&implicit.field.tape, implicit.inside, ladder) {
+            Some(certified) => Self::Polynomial {
                 certified: Box::new(certified),
                 exact,
-            }),
+            },
             None => enclosed(Method::Subdivision),
         }
     }
 
-    /// The first hits of a packet; `None` from the finder that proves nothing. `sharp` asks for
-    /// narrow enclosures where they cost more.
+    /// The first hits of a packet; `None` from [`Self::SignChange`], which proves nothing. `sharp` asks
+    /// for narrow enclosures at a higher cost.
     pub fn first_hits(
         &self,
         packet: &Packet,
@@ -98,14 +95,11 @@ pub enum ImplicitAnswer {
 }
 
 impl PlacedImplicit {
-    /// Places the surface.
-    ///
-    /// # Errors
-    /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
     pub fn new(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
+        let stepping = SteppingFinder::new(implicit, to_world)?;
         Ok(Self {
-            stepping: SteppingFinder::new(implicit, to_world)?,
-            finder: Finder::new(implicit, to_world)?,
+            finder: Finder::new(implicit, &stepping.ladder),
+            stepping,
         })
     }
 
@@ -113,8 +107,7 @@ impl PlacedImplicit {
         &self.finder
     }
 
-    /// The first hit with `t_min` < t < `t_max` inside the clip box; t = 0 counts where `t_min` is
-    /// 0.
+    /// The first hit with `t_min` < t < `t_max` inside the clip box; t = 0 counts where `t_min` is 0.
     pub fn first_hit(
         &self,
         query: &Query,
@@ -132,7 +125,7 @@ impl PlacedImplicit {
         }
     }
 
-    /// The same without the normal, which takes longer than all else where it has to be exact.
+    /// [`Self::first_hit`] without the normal, which takes longer than all else where it must be exact.
     pub fn first_crossing(
         &self,
         query: &Query,

@@ -1,38 +1,37 @@
-//! Several balls: one ray asks them together, its lanes balls; or each lane's ray asks those that it
-//! comes near.
+//! Several balls: tested together against one ray, a ball a lane; or each lane's ray is tested against
+//! those that it comes near.
 
 use super::{LaneRay, LaneShape, LaneSpan};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::lookup::SMALL;
 use crate::shape::sphere::{Ball, Foot, ball_span};
 
-/// Most balls of a group.
 pub const MOST: usize = SMALL;
 
 /// Bound of the error of the squared distance in [`Balls::near`], in units of u (max|o| + max|c|)²:
-/// with s = |o| + |c| ≤ √3 (max|o| + max|c|), nine roundings of sums up to s² and 9u s of error in g/|d|,
-/// squared, make 27u s², the rounding of the centre another 4u s²; 3 · 31 and a quarter more for
-/// this number's own rounding.
+/// with s = |o| + |c| ≤ √3 (max|o| + max|c|), nine roundings of sums up to s² and an error of 9u s in
+/// g/|d|, which enters squared, make 27u s², the rounding of the centre another 4u s². That is 3 · 31,
+/// and a quarter more pays for evaluating the error.
 const FOOT_ERROR: f64 = 116.0;
 
-/// The numbers of up to [`MOST`] balls by column.
+/// Up to [`MOST`] balls.
 #[derive(Debug, Clone)]
 pub struct Balls<T> {
-    /// The least reach of all is that of each.
+    /// The least reach stands for every ball.
     columns: Ball<[T; MOST]>,
     /// −[`Ball::clear`].
     behind: [T; MOST],
     centre_squared: [T; MOST],
     /// Largest magnitude of a centre's coordinate.
     largest: T,
-    /// Which objects they are; places without a ball repeat the last one.
+    /// The objects by place; places without a ball repeat the last one.
     pub objects: [u32; MOST],
     pub count: usize,
 }
 
 impl<T: Scalar> Balls<T> {
-    /// The balls that the given objects are; `None` where one is something else, or where they are
-    /// none or too many.
+    /// Of objects that are balls; `None` where one is something else, or where there are none or too
+    /// many.
     pub fn new(objects: &[u32], shapes: &[LaneShape<T>]) -> Option<Self> {
         if objects.len() > MOST {
             return None;
@@ -79,11 +78,11 @@ impl<T: Scalar> Balls<T> {
         l.mask_from_bits((first(self.count) >> from) & first(L::COUNT))
     }
 
-    /// The places of balls that each lane's ray may meet before `limit`, place i as bit i: not those
-    /// that it surely passes, leaves behind or does not reach, nor those of the objects `left_out`.
+    /// The places of balls that each lane's ray may meet before `limit`, place i as bit i, without those
+    /// of the objects `left_out`.
     ///
-    /// As `Foot::is_apart`, in fewer operations and less sharply: with g = (o − c) · d, the foot is at
-    /// −g/|d|² and its squared distance from the centre |o|² − 2 o · c + |c|² − g²/|d|².
+    /// Decided as by `Foot::is_apart`, with fewer operations and a larger error: with g = (o − c) · d, the
+    /// foot is at −g/|d|² and its squared distance from the centre |o|² − 2 o · c + |c|² − g²/|d|².
     #[inline(always)]
     pub fn near<L: Lanes<Scalar = T>, const N: usize>(
         &self,
@@ -131,7 +130,7 @@ impl<T: Scalar> Balls<T> {
         near
     }
 
-    /// The same for rays from farther away than the bounds of [`Foot::is_apart`] hold.
+    /// [`Self::near`] for rays from farther away than the bounds of `Foot::is_apart` hold.
     #[inline(never)]
     fn near_from_afar<L: Lanes<Scalar = T>>(
         &self,
@@ -174,8 +173,7 @@ impl<T: Scalar> Balls<T> {
         Foot::new(&self.columns, value, ray).span(l, &self.columns, value, ray)
     }
 
-    /// Where the ray, the same in all lanes, meets the balls from place `from` on, one a lane, as
-    /// [`LaneShape::span`].
+    /// Where the ray, the same in all lanes, meets the balls from place `from` on, one a lane.
     #[inline(always)]
     pub fn span<L: Lanes<Scalar = T>>(
         &self,

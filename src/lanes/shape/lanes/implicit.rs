@@ -1,9 +1,8 @@
 //! Implicit surfaces in lanes.
 //!
-//! Polynomials go to the certified finder, whatever the precision of the loop, in packets of
-//! eight. The baseline finder is the report's own method: equal steps along the clipped ray, a change
-//! of sign, bisection. It proves nothing; a pair of roots within one step is missed. It stays as the
-//! yardstick for certified finders.
+//! Finders that prove their answers work in f64, whatever the precision of the loop, on packets of
+//! eight rays. The finder by changes of sign, in lanes here, is that of
+//! [`baseline`](crate::shape::implicit::baseline).
 
 use std::cell::RefCell;
 
@@ -16,18 +15,19 @@ use crate::math::instructions::Instructions;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, WIDEST};
 use crate::math::packet::array;
 use crate::math::vec3::{Rows, Vec3};
+use crate::shape::Tally;
 use crate::shape::hierarchy::{Bounds, OuterBox};
 use crate::shape::implicit::Implicit;
 use crate::shape::implicit::certified::{Packet, WIDTH, Workspace};
 use crate::shape::implicit::placed::Finder;
-use crate::shape::{SingularMatrix, Tally};
+use crate::shape::ladder::Ladder;
 
 use super::LaneRay;
 
 #[derive(Debug, Clone)]
 pub struct LaneImplicit<T> {
     field: Field<T>,
-    /// The field in f64 and the size of the box, for normals where the gradient vanishes.
+    /// The field in f64 and the largest edge of the box, for normals where the gradient vanishes.
     scalar: Field,
     size: f64,
     centre: [T; 3],
@@ -36,20 +36,20 @@ pub struct LaneImplicit<T> {
     inverse: Rows<T>,
     /// The clip box's image.
     bounds: OuterBox<T>,
-    /// 16 unit roundoffs of a world coordinate of 1, as a length in object coordinates.
+    /// 16u of a world coordinate of 1 (see [`Packet::roundoff`]), as a length in object coordinates.
     rounding: T,
     finder: Finder,
 }
 
 thread_local! {
-    /// Room for the forms of a packet, once a thread.
+    // Room for the polynomials of a packet.
     static WORKSPACE: RefCell<Workspace> = RefCell::default();
 }
 
-/// Steps taken at once: reading a tape costs about as much as three operations of its own.
+/// Steps evaluated together: reading an operation from the tape costs about as much as executing three.
 const STRIDE: usize = 4;
 
-/// What a ray that starts on the surface knows: which sign the field has just after the start.
+/// The sign of the field just after the start, for rays that start on the surface.
 #[derive(Clone, Copy)]
 pub struct StartSign<L: Lanes> {
     /// Lanes that start on this surface.
@@ -58,11 +58,10 @@ pub struct StartSign<L: Lanes> {
     pub inward: L::Mask,
 }
 
-/// Rays that an implicit surface is asked about.
+/// Rays that are tested against an implicit surface.
 #[derive(Clone, Copy)]
 pub struct FieldQuestion<'a, L: Lanes> {
     pub ray: &'a LaneRay<L>,
-    /// What they know of the surface at their start.
     pub start: StartSign<L>,
     /// Hits count before this.
     pub limit: L::Real,
@@ -70,20 +69,13 @@ pub struct FieldQuestion<'a, L: Lanes> {
 }
 
 impl<T: Scalar> LaneImplicit<T> {
-    /// Rounds a placement: clip box in object coordinates, world → object map.
-    ///
-    /// # Errors
-    /// [`SingularMatrix`] where the matrix cannot be inverted.
-    pub fn new(
-        implicit: &Implicit,
-        to_world: &Affine,
-        inverse: &Affine,
-    ) -> Result<Self, SingularMatrix> {
+    pub fn new(implicit: &Implicit, to_world: &Affine, ladder: &Ladder) -> Self {
+        let inverse = ladder.inverse();
         let inside = implicit.inside;
         let centre = (inside[0] + inside[1]) / 2.0;
         let half = (inside[1] - inside[0]) / 2.0;
         let largest_row = inverse.abs().vector(DVec3::ONE).max_element();
-        Ok(Self {
+        Self {
             field: Field::new(&implicit.field.tape),
             scalar: Field::new(&implicit.field.tape),
             size: (inside[1] - inside[0]).max_element(),
@@ -93,8 +85,8 @@ impl<T: Scalar> LaneImplicit<T> {
             inverse: Rows::from_f64(&inverse.rows),
             bounds: OuterBox::new(&Bounds::around_image(to_world, inside[0], inside[1])),
             rounding: T::from_f64(16.0 * T::ROUNDOFF * largest_row),
-            finder: Finder::new(implicit, to_world)?,
-        })
+            finder: Finder::new(implicit, ladder),
+        }
     }
 
     pub fn finder(&self) -> &Finder {
@@ -104,7 +96,7 @@ impl<T: Scalar> LaneImplicit<T> {
     /// The first hits before `limit`; where the mask is false, none is known.
     ///
     /// The ray is clipped to the surface's own box and the hit compared with the limit afterwards, so
-    /// that a hit does not depend, in its last digits, on what else was asked before.
+    /// that a hit's last digits do not depend on what was tested before.
     #[inline(never)]
     pub fn first_hit<L: Lanes<Scalar = T>>(
         &self,
@@ -141,8 +133,8 @@ impl<T: Scalar> LaneImplicit<T> {
     }
 
     /// Outward normals at object points that are met in these directions: the gradient, of any
-    /// length; where it vanishes, the unit normal that [`normal::outward`] finds. And the steps that
-    /// take points onto the surface which lie off it for having come from afar.
+    /// length; where it vanishes, the unit normal that [`normal::outward`] finds. And the steps onto the
+    /// surface, for points that rounding on a long way has put off it.
     ///
     /// A point p = o + t d is off by roundings of |o| and |t d|, at most 16 u `reach` in each coordinate
     /// with u the unit roundoff and `reach` the sum of both (as for the start of a ray, see

@@ -1,11 +1,15 @@
-//! The first rung: every shape in lanes, answering hit, miss or undecided.
+//! The first tier: every shape in lanes, answering hit, miss or undecided.
 //!
-//! A ray is taken to canonical coordinates by the rounded inverse matrix. With unit roundoff u,
-//! row sums Rᵢ = Σⱼ|mᵢⱼ| and s = max|o|, component i of the computed local origin is within
-//! Eᵢ = 6u (Rᵢ s + |bᵢ| + 1) and that of the local direction within Dᵢ = 6u Rᵢ of the exact one
-//! (four rounded coefficients and three fused operations each; the 1 pays for the shape's own
-//! constants). What follows from E and D is bounded shape by shape; a lane that a bound cannot
-//! decide is left to the certified ladder.
+//! A ray is taken to canonical coordinates by the rounded inverse matrix. Let u be the unit roundoff,
+//! Rᵢ = Σⱼ|mᵢⱼ| a row sum, bᵢ a shift and s = max|o|. Component i of the local origin is a sum of
+//! magnitude at most Aᵢ = Rᵢ s + |bᵢ|; rounding its coefficients moves it by u Aᵢ, and each of three
+//! fused operations by as much. It is within Eᵢ = 6u (Aᵢ + 1) of the exact one, and component i of the
+//! local direction within Dᵢ = 6u Rᵢ: what 6 has beyond 4 pays for terms in u² and for coefficients
+//! rounded twice, to f64 and to single; the 1 pays for rounding the shape's own constants.
+//!
+//! Each shape bounds what follows from E and D where it uses it, those that are round at
+//! [`round_span`](crate::shape::sphere::round_span). A lane that a bound cannot decide is left to the
+//! certified ladder.
 
 use glam::DVec3;
 
@@ -21,11 +25,12 @@ pub mod balls;
 pub mod implicit;
 pub mod part;
 
-/// Rays of a packet; directions are unit up to rounding.
+/// Rays of a packet.
 #[derive(Clone, Copy)]
 pub struct LaneRay<L: Lanes> {
-    /// Origins, scene units about the camera.
+    /// Scene units about the camera.
     pub origin: Vec3<L::Real>,
+    /// Of length 1 up to rounding.
     pub direction: Vec3<L::Real>,
     /// Largest magnitude of an origin's coordinates.
     pub extent: L::Real,
@@ -87,10 +92,10 @@ impl<L: Lanes> Enclosure<L> {
     }
 }
 
-/// Where a line enters and leaves a convex shape, with bounds.
+/// Where a line enters and leaves a convex shape, with error bounds.
 #[derive(Clone, Copy)]
 pub struct LaneSpan<L: Lanes> {
-    /// Entry, where the line meets the shape.
+    /// Entry.
     pub near: Enclosure<L>,
     /// Exit; that of flat shapes is the entry.
     pub far: Enclosure<L>,
@@ -103,7 +108,7 @@ pub struct LaneSpan<L: Lanes> {
 }
 
 impl<L: Lanes> LaneSpan<L> {
-    /// That of a line which certainly misses.
+    /// The span of a line that certainly misses.
     #[inline(always)]
     pub fn missed(l: L) -> Self {
         let nowhere = Enclosure::about(l.real(0.0), l.real(0.0));
@@ -119,7 +124,7 @@ impl<L: Lanes> LaneSpan<L> {
 
 #[derive(Debug, Clone, Copy)]
 pub struct LaneShape<T> {
-    /// Which shape; implicit surfaces are intersected elsewhere and place nothing here.
+    /// `None` for implicit surfaces, which [`implicit`] intersects.
     pub kind: Option<ShapeKind>,
     /// World (about the camera) → canonical coordinates.
     pub inverse: Rows<T>,
@@ -130,9 +135,9 @@ pub struct LaneShape<T> {
     pub direction_error: [T; 3],
     /// 6u (|bᵢ| + 1).
     pub offset_error: [T; 3],
-    /// Bounds of a flat shape's plane test, see [`flat::margins`].
+    /// See [`flat::margins`].
     pub margins: [T; 2],
-    /// A sphere that is one in the world too.
+    /// The image of the unit sphere, where that is a sphere.
     pub ball: Option<Ball<T>>,
 }
 
@@ -140,7 +145,7 @@ impl<T: Scalar> LaneShape<T> {
     /// Rounds a placement whose inverse is given; `reach` is the largest magnitude of a coordinate
     /// among the points that rays usually start from.
     pub fn new(kind: Option<ShapeKind>, forward: &Affine, inverse: &Affine, reach: f64) -> Self {
-        // One more half unit roundoff in the bounds pays for rounding the bounds themselves.
+        // Half a unit roundoff beyond 6 pays for rounding the bounds: three operations, 3u of them.
         let unit = 6.5 * T::ROUNDOFF;
         Self {
             kind,
@@ -156,7 +161,7 @@ impl<T: Scalar> LaneShape<T> {
         }
     }
 
-    /// Eᵢ for a packet of rays.
+    /// Eᵢ.
     #[inline(always)]
     pub fn origin_error<L: Lanes<Scalar = T>>(&self, l: L, ray: &LaneRay<L>, i: usize) -> L::Real {
         ray.extent.mul_add(
@@ -194,7 +199,7 @@ impl<T: Scalar> LaneShape<T> {
 /// A point moved onto a surface, and the unit outward normal there (+z of flat shapes).
 #[derive(Clone, Copy)]
 pub struct LaneSurface<L: Lanes> {
-    /// The point, scene units about the camera.
+    /// Scene units about the camera.
     pub point: Vec3<L::Real>,
     pub normal: Vec3<L::Real>,
 }

@@ -1,4 +1,4 @@
-//! The parts of shapes: pieces of surface of which a few numbers say all.
+//! Parts of shapes: pieces of surface that a few numbers describe.
 
 use super::LaneSurface;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar};
@@ -13,7 +13,7 @@ pub enum PartKind {
     Faces,
     /// A ball: centre and radius.
     Ball,
-    /// Something that only its own file knows.
+    /// Described by the shape's own file: [`Canonical::surface`](crate::shape::kind::Canonical::surface).
     Other,
 }
 
@@ -65,8 +65,8 @@ pub struct Outline<L: Lanes> {
 }
 
 impl<L: Lanes> Outline<L> {
-    /// The points p moved onto the surfaces, and the unit outward normals there; what is asked of
-    /// lanes whose part is [`PartKind::Other`] means nothing.
+    /// The points p moved onto the surfaces, and the unit outward normals there; meaningless in lanes
+    /// whose part is [`PartKind::Other`].
     #[inline(always)]
     pub fn surface(&self, l: L, p: Vec3<L::Real>) -> LaneSurface<L> {
         let mut normal = self.vector;

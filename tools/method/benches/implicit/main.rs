@@ -25,6 +25,7 @@ use etalon::inside::scene::FinderChoice;
 use etalon::inside::shape::Query;
 use etalon::inside::shape::implicit::baseline::SteppingFinder;
 use etalon::inside::shape::implicit::certified::{Certified, Effort, Packet, WIDTH, Workspace};
+use etalon::inside::shape::ladder::Ladder;
 use etalon::inside::shape::lanes::implicit::LaneImplicit;
 use etalon::{Instructions, Ray};
 use etalon_doors::shapes::sign_changes;
@@ -48,11 +49,11 @@ impl Surface {
         let mut implicit = implicit(field, half);
         implicit.finder = FinderChoice::SignChange;
         let (tape, inside) = (&implicit.field.tape, implicit.inside);
-        let placed = Certified::new(tape, inside, &Affine::IDENTITY).unwrap();
+        let ladder = Ladder::new(&Affine::IDENTITY).unwrap();
         Self {
             degree: implicit.field.polynomial.as_ref().unwrap().degree(),
-            certified: placed.unwrap(),
-            stepping: LaneImplicit::new(&implicit, &Affine::IDENTITY, &Affine::IDENTITY).unwrap(),
+            certified: Certified::new(tape, inside, &ladder).unwrap(),
+            stepping: LaneImplicit::new(&implicit, &Affine::IDENTITY, &ladder),
             scalar: SteppingFinder::new(&implicit, &Affine::IDENTITY).unwrap(),
             yardstick: Yardstick::new(tape, half),
         }

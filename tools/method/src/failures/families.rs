@@ -14,6 +14,7 @@ use etalon::inside::field::named;
 use etalon::inside::math::affine::Affine;
 use etalon::inside::scene::Implicit;
 use etalon::inside::shape::implicit::certified::Certified;
+use etalon::inside::shape::ladder::Ladder;
 use etalon::inside::shape::{Ray, ShapeKind};
 
 /// What makes rays hard.
@@ -316,7 +317,8 @@ fn bodies(
 ) -> Option<Vec<Body>> {
     if let Some(model) = model {
         let implicit = implicit(&model.expression, model.half);
-        let certified = Certified::new(&implicit.field.tape, implicit.inside, to_world).ok()??;
+        let ladder = Ladder::new(to_world).ok()?;
+        let certified = Certified::new(&implicit.field.tape, implicit.inside, &ladder)?;
         return Some(vec![Body {
             to_world: *to_world,
             kind: None,

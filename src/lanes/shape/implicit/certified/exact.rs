@@ -1,4 +1,4 @@
-//! One ray, decided exactly.
+//! The first hit of one ray, decided exactly.
 
 use std::cmp::Ordering;
 
@@ -13,24 +13,20 @@ use crate::root::exact::{ExactRoot, Point, Stretch, first_root, sharpened};
 use crate::shape::Ray;
 use crate::shape::ladder::ScaledRay;
 
-/// A ray in integers: local point = (origin + t direction) / scale.
+/// A ray in integers: local point = (origin + t direction) / scale, with t in units of the scaled
+/// direction and a common power of two left out.
 struct IntegerRay {
     /// Origin and direction by coordinate.
     coordinates: [[BigInt; 2]; 3],
     scale: BigInt,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum ExactStart {
-    Free,
-    /// A point of the surface, rounded with this unit roundoff.
-    OnSurface(f64),
+    /// Factor from t of the world ray to t here.
+    unit: f64,
 }
 
 impl IntegerRay {
-    /// The common power of two is of no concern. t is in units of the scaled direction.
-    fn new(placed: &Certified, ray: &ScaledRay) -> Self {
-        let line = placed.ladder.exact.local(ray);
+    fn new(placed: &Certified, ray: &Ray) -> Self {
+        let scaled = ScaledRay::new(ray);
+        let line = placed.ladder.exact.local(&scaled);
         let all = line
             .origin
             .iter()
@@ -49,7 +45,13 @@ impl IntegerRay {
         Self {
             coordinates: [0, 1, 2].map(|i| [&line.origin[i], &line.direction[i]].map(integer)),
             scale: integer(&line.scale),
+            unit: power_of_two(scaled.exponent()),
         }
+    }
+
+    /// Coefficients of a factor's field in powers of t.
+    fn coefficients(&self, program: &Program) -> Option<Vec<BigInt>> {
+        program.powers(&self.coordinates, &self.scale, program.result().degree)
     }
 
     /// Where the line is in the closed clip box and the limits are kept; `None` for nowhere.
@@ -58,7 +60,7 @@ impl IntegerRay {
         let mut stretch = Stretch {
             low: Point::of(t_min),
             low_counts: t_min == 0.0,
-            // Where there is no limit, a face follows: the direction is not zero.
+            // Where there is no limit, a face is: the direction is not zero.
             high: Point::of(f64::MAX),
             high_counts: false,
         };
@@ -99,30 +101,26 @@ impl IntegerRay {
     }
 }
 
-/// The first hit of a ray, with its multiplicity, perhaps near the hint; t in units of the
-/// direction.
+/// The first hit of a ray, with its multiplicity, perhaps near the hint; t in units of the direction.
+/// A ray that leaves the surface starts at a point that was rounded with `start_roundoff`.
 pub(super) fn first_hit(
     placed: &Certified,
     ray: &Ray,
     limits: [f64; 2],
-    start: ExactStart,
+    start_roundoff: Option<f64>,
     hint: f64,
 ) -> Option<ExactRoot> {
     if !ray.is_valid() || limits[0].is_nan() || limits[1].is_nan() {
         return None;
     }
-    let scaled = ScaledRay::new(ray);
-    let unit = power_of_two(scaled.exponent());
-    let line = IntegerRay::new(placed, &scaled);
+    let line = IntegerRay::new(placed, ray);
+    let unit = line.unit;
     let stretch = line.stretch(placed, limits.map(|t| t * unit))?;
     let hint = Some(hint * unit).filter(|x| x.is_finite());
     let mut first: Option<ExactRoot> = None;
     for factor in &placed.factors {
-        let degree = factor.program.result().degree;
-        let mut coefficients = factor
-            .program
-            .powers(&line.coordinates, &line.scale, degree)?;
-        if let ExactStart::OnSurface(roundoff) = start
+        let mut coefficients = line.coefficients(&factor.program)?;
+        if let Some(roundoff) = start_roundoff
             && is_start(&coefficients, roundoff)
         {
             coefficients = beyond_start(coefficients);
@@ -155,15 +153,11 @@ pub(super) fn hit_points(
     enclosure: [f64; 2],
     bits: u32,
 ) -> Option<[[Exact; 3]; 2]> {
-    let scaled = ScaledRay::new(ray);
-    let unit = power_of_two(scaled.exponent());
-    let line = IntegerRay::new(placed, &scaled);
+    let line = IntegerRay::new(placed, ray);
+    let unit = line.unit;
     let mut first: Option<([Exact; 2], u32)> = None;
     for factor in &placed.factors {
-        let degree = factor.program.result().degree;
-        let coefficients = factor
-            .program
-            .powers(&line.coordinates, &line.scale, degree)?;
+        let coefficients = line.coefficients(&factor.program)?;
         let Some(ends) = sharpened(&coefficients, enclosure.map(|t| t * unit), bits) else {
             continue;
         };
@@ -175,7 +169,7 @@ pub(super) fn hit_points(
         }
     }
     let (ends, power) = first?;
-    let local = placed.ladder.exact.local(&scaled);
+    let local = placed.ladder.exact.local(&ScaledRay::new(ray));
     let point = |t: &Exact| {
         [0, 1, 2].map(|i| {
             let place = local.origin[i].plus(&local.direction[i].times(t));
@@ -193,9 +187,8 @@ pub(super) fn order_of_vanishing(
     ray: &Ray,
     t: f64,
 ) -> usize {
-    let scaled = ScaledRay::new(ray);
-    let line = IntegerRay::new(placed, &scaled);
-    let at = Point::of(t * power_of_two(scaled.exponent()));
+    let line = IntegerRay::new(placed, ray);
+    let at = Point::of(t * line.unit);
     // (o + (t + τ) d) / s = (o q + p d + τ' d) / (s q) for t = p / q and τ' = q τ.
     let (p, q) = (&at.numerator, &at.denominator);
     let mut coordinates = line.coordinates;
@@ -203,7 +196,7 @@ pub(super) fn order_of_vanishing(
         *o = &*o * q + &*d * p;
     }
     let mut scale = &line.scale * q;
-    // Powers of two that are common are of no concern.
+    // Common powers of two are left out.
     let shift = trailing(coordinates.iter().map(|[o, _]| o).chain([&scale]));
     scale >>= shift;
     let shift_directions = trailing(coordinates.iter().map(|[_, d]| d));
@@ -270,16 +263,17 @@ fn earlier(a: ExactRoot, b: ExactRoot) -> ExactRoot {
     }
 }
 
-/// Whether the factor is the one whose root the start is: its value is small beside what it is
-/// elsewhere on the line. The start is off by some 2⁴ roundings of coordinates that may be 2¹²
-/// times as large as the object; a factor that is not the one is not as small.
+/// Whether the start is a root of this factor: whether its value is small beside what it is elsewhere on
+/// the line. The start is off by some 2⁴ roundings of coordinates that may be 2¹² times as large as the
+/// object, 16 bits in all.
 fn is_start(coefficients: &[BigInt], roundoff: f64) -> bool {
     let largest = coefficients.iter().skip(1).map(BigInt::bits).max();
     let bits = (1.0 / roundoff).log2() as u64 - 16;
     coefficients[0].bits() + bits < largest.unwrap_or(0)
 }
 
-/// The field less its value at the start, divided by t: the level through the start itself.
+/// The field less its value at the start, divided by t: what is left when the root at the start is
+/// divided out.
 fn beyond_start(coefficients: Vec<BigInt>) -> Vec<BigInt> {
     let mut rest: Vec<BigInt> = coefficients.into_iter().skip(1).collect();
     while rest.len() > 1 && rest[0].is_zero() {

@@ -1,4 +1,4 @@
-//! One packet in one arithmetic.
+//! The first hits of a packet in one arithmetic.
 
 use super::place::{Certified, FactorField, Inverse};
 use super::{Answers, Ask, Packet, SHARP, WIDTH};
@@ -13,14 +13,15 @@ struct Clipped<L: DoubleLanes> {
     far: L::Real,
     /// Bound of the distance between rounded and exact local points on the clipped line.
     shift: L::Real,
-    /// What a unit roundoff of 1 in the world's coordinates moves the local start by.
+    /// Distance by which the local start may be off, for rays that leave the surface, over their unit
+    /// roundoff.
     start_shift: L::Real,
     meets: L::Mask,
     /// Lanes for which the bounds mean nothing.
     lost: L::Mask,
 }
 
-/// The first hits, as far as this arithmetic can tell; as many rays at once as there are lanes.
+/// The first hits, as far as this arithmetic can tell.
 #[inline(never)]
 pub(super) fn first_hits<L: DoubleLanes, W: Solving<L>>(l: L, ask: Ask<'_>) -> Answers {
     l.vectorize(inlined!(|| {
@@ -93,7 +94,7 @@ impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
         local
     }
 
-    /// The part of the lines within the box and the limits, and a little more.
+    /// The part of the lines within the limits and the box, widened by a bound of rounding.
     #[inline(always)]
     fn clip(
         &self,
@@ -110,14 +111,15 @@ impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
         let face = l.real(placed.farthest);
         let reach = o[0].abs().max(o[1].abs()).max(o[2].abs()) + face;
         let fastest = d[0].abs().max(d[1].abs()).max(d[2].abs());
-        // No point of the box is farther along the line; twice as much pays for the margin.
+        // No point of the box is farther along the line; the factor 2 pays for the margin.
         let farthest = (reach + reach) / fastest;
         let moved = self
             .extent
             .mul_add(l.real(inverse.origin_error), l.real(inverse.offset_error));
         let turned = self.length * l.real(inverse.direction_error);
         let map_error = farthest.mul_add(turned, moved);
-        // A face is met at a t with three roundings: that moves the point by 3u (reach + margin).
+        // Where a face is met, t is rounded three times (difference, reciprocal, product), which moves the
+        // point by 3u (reach + margin); 4ε are 8u.
         let slack = reach.mul_add(l.real(4.0 * f64::EPSILON), map_error);
         let mut lost = !slack.lt(l.real(placed.margin * 0.5)) | !fastest.gt(tiny);
         let mut meets = l.mask(true);
@@ -135,7 +137,8 @@ impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
             near = l.select(along, near, t1.min(t2).max(near));
             far = l.select(along, far, t1.max(t2).min(far));
         }
-        // Rounding of the ends themselves: a fused operation, or a product and a sum.
+        // Rounding of the ends: in f64 a fused operation, off by u of a point of the box; in double-double
+        // a product and a sum, 3 units with that of t, doubled for evaluating the bound.
         let rounding = reach.mul_add(l.real(3.0 * W::UNIT), map_error);
         let rounding = if W::ROWS == 1 {
             map_error + face * l.real(f64::EPSILON)
@@ -146,7 +149,7 @@ impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
             near,
             far,
             shift: rounding,
-            // Distance, product, sum and the way back: 2³ roundings with room to spare.
+            // 2³ roundings on the way to the point and as many back, as in `EnclosedPacket::first_hits`.
             start_shift: (self.extent + self.extent) * l.real(8.0 * inverse.largest_row),
             meets: meets & near.le(far),
             lost: lost | !(far - near).lt(l.real(f64::INFINITY)) & meets & near.le(far),
@@ -284,8 +287,8 @@ fn square<L: DoubleLanes, W: Word<L>>(
     }
 }
 
-/// In a function of its own for M coefficients, so that its numbers can stay in registers, or in one
-/// for up to [`MOST`].
+/// The first roots, compiled for M coefficients, so that they can stay in registers, or for up to
+/// [`MOST`].
 #[inline(never)]
 fn ask<L: DoubleLanes, W: Word<L>, const M: usize>(
     l: L,
@@ -304,7 +307,6 @@ fn ask<L: DoubleLanes, W: Word<L>, const M: usize>(
 }
 
 pub(super) trait Solving<L: DoubleLanes>: Word<L> {
-    /// The first roots of polynomials with `count` coefficients.
     fn solve(l: L, question: &Question<L>, rows: &[Row], count: usize) -> Roots<L>;
 }
 
@@ -321,7 +323,7 @@ impl<L: DoubleLanes> Solving<L> for Plain<L> {
     }
 }
 
-/// Few rays need it: a solver for each degree would be code for nothing.
+/// One solver for all degrees, as few rays come here.
 impl<L: DoubleLanes> Solving<L> for Pair<L> {
     #[inline(always)]
     fn solve(l: L, question: &Question<L>, rows: &[Row], count: usize) -> Roots<L> {
@@ -373,8 +375,8 @@ impl<L: DoubleLanes> Combined<L> {
         let error = clipped
             .shift
             .mul_add(l.real(bounds.change), l.real(bounds.error));
-        // The start of a ray that leaves the surface is a root of it as far as f64 could tell, and
-        // its coordinates are off by some roundings of the world's.
+        // The start of a ray that leaves the surface is a root up to the error of the finder that found
+        // it and up to the rounding of its world coordinates.
         let rounding = clipped.start_shift * l.real(packet.roundoff);
         let question = Question {
             error,
@@ -421,7 +423,7 @@ impl<L: DoubleLanes> Combined<L> {
         let high = self.high.min(clipped.far);
         let mut sure = self.found & !self.undecided;
         if placed.is_cut {
-            // The margin is wider than what rounding does to these points.
+            // The share of the margin is wider than the rounding of these points.
             for i in 0..3 {
                 let (o, d) = (local.origin[i].head(), local.direction[i].head());
                 let (a, b) = (d.mul_add(low, o), d.mul_add(high, o));

@@ -1,4 +1,4 @@
-//! The direction of the gradient at a hit that f64 does not place well enough.
+//! The direction of the gradient at a hit where f64 does not determine it.
 
 use glam::DVec3;
 use num_bigint::BigInt;
@@ -36,8 +36,7 @@ impl Certified {
     }
 }
 
-/// ∇f, up to the relative precision of exact numbers' quotients; `None` for fields that are no
-/// polynomials.
+/// ∇f, up to the relative precision of exact quotients; `None` for fields that are no polynomials.
 fn gradient(field: &Tape, point: &[Exact; 3]) -> Option<[Exact; 3]> {
     let numbers = Exactly(point);
     let found = field.evaluate(&Gradients(&numbers), &mut Vec::new())?;
@@ -45,7 +44,7 @@ fn gradient(field: &Tape, point: &[Exact; 3]) -> Option<[Exact; 3]> {
     Some([x?, y?, z?])
 }
 
-/// The unit vector along one that may be far beyond the range of f64.
+/// The unit vector along a vector that may be far beyond the range of f64.
 fn direction(v: &[Exact; 3]) -> Option<DVec3> {
     let largest = v.iter().filter_map(Exact::magnitude).max()?;
     let scaled = v.each_ref().map(|x| x.shifted(-largest).to_f64());
@@ -56,7 +55,7 @@ fn zero() -> Exact {
     Exact::integer(BigInt::ZERO)
 }
 
-/// Exact arithmetic at a point; `None` for what leaves the polynomials.
+/// Exact arithmetic at a point; `None` for what is no polynomial.
 struct Exactly<'a>(&'a [Exact; 3]);
 
 impl Algebra for Exactly<'_> {

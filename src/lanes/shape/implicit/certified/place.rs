@@ -6,12 +6,10 @@ use crate::field::outer::outer_box;
 use crate::field::program::Program;
 use crate::field::program::bounds::{Bound, PLAIN, Rounding, binomial, bounds};
 use crate::field::tape::Tape;
-use crate::math::affine::Affine;
 use crate::math::double_double::DoubleDouble;
 use crate::math::exact::Exact;
 use crate::math::number::Number;
 use crate::root::bernstein::{DEGREES, split_error};
-use crate::shape::SingularMatrix;
 use crate::shape::ladder::Ladder;
 
 /// Double-double in lanes, see [`crate::math::words::Pair`].
@@ -30,7 +28,7 @@ pub struct FactorField {
     pub bounds: [Bound; 2],
     /// Bound of the value at a root as f64 finds it.
     pub root_error: f64,
-    /// Part of the solver's rounding that is accounted for: 1.
+    /// Share of the solver's rounding that its bounds include: 1, but for tests.
     pub accounted: f64,
 }
 
@@ -41,9 +39,9 @@ pub(super) struct Inverse {
     pub rows: [[[f64; 2]; 4]; 3],
     /// Error of a local direction's component, for a direction whose largest component is 1.
     pub direction_error: f64,
-    /// The same of a local origin, for an origin whose largest component is 1.
+    /// Error of a local origin's component, for an origin whose largest component is 1 …
     pub origin_error: f64,
-    /// And what does not depend on the origin.
+    /// … and the part of it that does not depend on the origin.
     pub offset_error: f64,
     /// Largest sum of a row's magnitudes: local length of a world vector of components 1.
     pub largest_row: f64,
@@ -60,42 +58,31 @@ pub struct Certified {
     pub(super) outer: [[f64; 3]; 2],
     /// Largest magnitude of a coordinate there.
     pub(super) farthest: f64,
-    /// Faces beyond which a root would not count; infinite where the surface does not reach them.
+    /// Faces of the clip box that cut the surface; infinite where the surface does not reach them.
     pub(super) cut: [[f64; 3]; 2],
     /// Whether there are such faces.
     pub(super) is_cut: bool,
-    /// Bound of the local ends' coordinates beyond the outer box.
+    /// How far outside of the outer box the ends of a clipped ray may lie.
     pub(super) margin: f64,
 }
 
-/// Share of the box by which the ends of a clipped ray may lie outside of it.
+/// [`Certified::margin`] over half the largest edge of the outer box.
 const MARGIN: f64 = 1.0 / 1024.0;
 
 impl Certified {
     /// Places the zeros of a field within a clip box; `None` where the field is no polynomial, or
     /// one that is too large.
-    ///
-    /// # Errors
-    /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
-    pub fn new(
-        field: &Tape,
-        clip: [DVec3; 2],
-        to_world: &Affine,
-    ) -> Result<Option<Self>, SingularMatrix> {
+    pub fn new(field: &Tape, clip: [DVec3; 2], ladder: &Ladder) -> Option<Self> {
         let factors = field.factors().factors;
         let programs = factors
             .iter()
             .map(|f| Some((Program::new(&f.tape, &DEGREES)?, f.multiplicity)));
-        let Some(programs) = programs.collect::<Option<Vec<_>>>() else {
-            return Ok(None);
-        };
+        let mut programs = programs.collect::<Option<Vec<_>>>()?;
         let tapes: Vec<Tape> = factors.into_iter().map(|f| f.tape).collect();
         let whole = outer_box(&tapes, clip);
-        let programs = if whole.is_some() {
-            programs
-        } else {
-            Vec::new()
-        };
+        if whole.is_none() {
+            programs.clear();
+        }
         let outer = whole.unwrap_or(clip);
         let margin = MARGIN * ((outer[1] - outer[0]) / 2.0).max_element().max(0.0);
         let farthest = outer[0].abs().max(outer[1].abs());
@@ -105,22 +92,21 @@ impl Certified {
             DVec3::select(is_free, DVec3::splat(free), clip[i])
         });
         let is_cut = cut.iter().any(|corner| corner.is_finite_mask().any());
-        let ladder = Ladder::new(to_world)?;
         let factors = programs
             .into_iter()
             .map(|(program, power)| FactorField::new(program, power, reach))
             .collect();
-        Ok(Some(Self {
+        Some(Self {
             factors,
-            inverse: [Inverse::plain(&ladder), Inverse::pair(&ladder)],
-            ladder,
+            inverse: [Inverse::plain(ladder), Inverse::pair(ladder)],
+            ladder: ladder.clone(),
             clip: clip.map(|corner| corner.to_array()),
             outer: outer.map(|corner| corner.to_array()),
             farthest: farthest.max_element(),
             cut: cut.map(|corner| corner.to_array()),
             is_cut,
             margin,
-        }))
+        })
     }
 
     /// Largest number of coefficients of a factor's forms.
@@ -139,8 +125,8 @@ impl FactorField {
             [high, (-b).mul_add(high, 1.0) / b]
         };
         let by_tier = [PLAIN, PAIR].map(|rounding| bounds(&program, reach, rounding));
-        // Twice the bound, as the estimate is of the same quality as the signs around it, and as many
-        // splits as hardly any root takes.
+        // At a root that f64 finds, the value as computed is within the bound of 0, and the exact one
+        // within the bound of that. Hardly any root takes as many splits as 16.
         let splits = 16.0 * split_error(degree, PLAIN.unit) * by_tier[0].size;
         Self {
             root_error: 2.0 * (by_tier[0].error + splits),
@@ -171,13 +157,13 @@ impl Inverse {
     }
 
     fn plain(ladder: &Ladder) -> Self {
-        // Three rounded coefficients, an offset and three fused operations: 6u, see
-        // `shape::lanes`; half a unit more pays for the rounding of the bounds.
+        // 6u, and half a unit for rounding the bounds: see [`crate::shape::lanes`].
         Self::new(ladder, 6.5 * f64::EPSILON / 2.0, |_| 0.0, 1)
     }
 
     fn pair(ladder: &Ladder) -> Self {
-        // Three products and three sums, and the entries' own errors.
+        // Three products and three sums are each off by a unit, two more pay for evaluating the bound; and
+        // the entries' own errors.
         Self::new(ladder, 8.0 * PAIR.unit, DoubleDouble::error, 2)
     }
 
