@@ -32,8 +32,7 @@ pub const SURVEY: u32 = 64;
 /// Central moments of every pixel's samples, from independent sampling.
 #[derive(Debug, Clone)]
 pub struct Survey {
-    width: usize,
-    height: usize,
+    size: [usize; 2],
     count: f64,
     /// Mean and sums of second and third powers of deviations.
     moments: Vec<[f64; 3]>,
@@ -91,12 +90,11 @@ impl Survey {
     /// Surveys a scene that samples independently, with [`SURVEY`] samples a pixel in as many
     /// replicates, by this number of renders.
     pub fn new(ready: &mut Ready, renders: u32) -> Self {
-        let [width, height] = ready.scene.image.size.map(|n| n as usize);
+        let size = ready.size();
         let mut survey = Self {
-            width,
-            height,
+            size,
             count: 0.0,
-            moments: vec![[0.0; 3]; width * height],
+            moments: vec![[0.0; 3]; size[0] * size[1]],
         };
         for render in 0..renders {
             let rendered = ready.render(render, &mut Unwatched);
@@ -127,10 +125,8 @@ impl Survey {
                 contributing: second * second * second / (third * third),
             })
         };
-        members(self.width, self.height, EDGE)
-            .iter()
-            .map(of)
-            .collect()
+        let blocks = members(self.size[0], self.size[1], EDGE);
+        blocks.iter().map(of).collect()
     }
 }
 

@@ -63,10 +63,9 @@ pub fn resume(path: &Path, request: &[(&str, String)]) -> Result<Option<Grid>, S
 }
 
 fn quoted(text: &str) -> String {
-    if text.is_empty() {
-        "not given".to_owned()
-    } else {
-        format!("\"{text}\"")
+    match text {
+        "" => "not given".to_owned(),
+        text => format!("\"{text}\""),
     }
 }
 

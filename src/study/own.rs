@@ -104,15 +104,14 @@ pub fn write(
         ("overrides", overrides.to_owned()),
         ("settings", ready.name.clone()),
     ];
-    for (name, value) in texts.into_iter().filter(|(_, value)| !value.is_empty()) {
-        let attribute = (name.to_owned(), Attribute::Text(value));
-        picture.attributes.push(attribute);
-    }
+    let texts = texts.into_iter().filter(|(_, text)| !text.is_empty());
+    let texts = texts.map(|(name, text)| (name, Attribute::Text(text)));
     let counts = [("replicates", own.count), ("spp", ready.scene.image.spp)];
-    for (name, value) in counts {
-        let value = Attribute::whole_number(value.into());
-        picture.attributes.push((name.to_owned(), value));
-    }
+    let counts = counts.map(|(name, count)| (name, Attribute::whole_number(count.into())));
+    let all = texts
+        .chain(counts)
+        .map(|(name, value)| (name.to_owned(), value));
+    picture.attributes = all.collect();
     exr::write(path, &picture)
 }
 
@@ -121,8 +120,8 @@ pub fn write(
 /// # Errors
 /// [`ReferenceError`] where the file has changed so that it cannot be one.
 pub fn read(path: &Path, size: [usize; 2]) -> Result<Reference, ReferenceError> {
-    let picture = exr::read(path)?;
-    let mut reference = Reference::of_picture(path, &picture, size)?;
-    reference.name = "own".to_owned();
-    Ok(reference)
+    Ok(Reference {
+        name: "own".to_owned(),
+        ..Reference::of_picture(path, &exr::read(path)?, size)?
+    })
 }

@@ -104,13 +104,12 @@ fn table(curves: &[Curve], abscissa: &str) -> String {
             .map(|c| format!("<{tag}>{}</{tag}>", escaped(c)));
         format!("<tr>{}</tr>\n", cells.collect::<String>())
     };
-    let mut text = format!("<table>\n{}", cells("th", &heads.map(str::to_owned)));
-    for curve in curves {
-        for point in &curve.points {
-            text.push_str(&cells("td", &numbers(curve, point)));
-        }
-    }
-    text + "</table>"
+    let points = curves.iter().flat_map(|curve| {
+        let points = curve.points.iter();
+        points.map(|point| cells("td", &numbers(curve, point)))
+    });
+    let head = cells("th", &heads.map(str::to_owned));
+    format!("<table>\n{head}{}</table>", points.collect::<String>())
 }
 
 fn numbers(curve: &Curve, point: &Point) -> [String; 9] {
@@ -118,7 +117,8 @@ fn numbers(curve: &Curve, point: &Point) -> [String; 9] {
         half if half.is_nan() => format!("{:.3e}", m.value),
         half => format!("{:.3e} ± {half:.1e}", m.value),
     };
-    let ratio = point.estimated_over_actual();
+    let ratio = Some(point.estimated_over_actual()).filter(|ratio| !ratio.is_nan());
+    let floor = "reference's floor";
     [
         curve.label.clone(),
         Figure::number(point.x),
@@ -127,14 +127,8 @@ fn numbers(curve: &Curve, point: &Point) -> [String; 9] {
         with(point.mean(|row| row.relmse)),
         with(point.rmse()),
         with(point.mean(|row| row.bias)),
-        Some(ratio)
-            .filter(|ratio| !ratio.is_nan())
-            .map_or_else(String::new, |ratio| format!("{ratio:.3}")),
-        if point.at_floor() {
-            "reference's floor".to_owned()
-        } else {
-            String::new()
-        },
+        ratio.map_or_else(String::new, |ratio| format!("{ratio:.3}")),
+        if point.at_floor() { floor } else { "" }.to_owned(),
     ]
 }
 

@@ -157,12 +157,11 @@ fn planned(
         return Ok((grid, None));
     }
     // One point a curve, for the pilot.
-    let short = Axis {
-        key: Key::Spp,
-        values: vec!["64".to_owned()],
-    };
     let grid = Grid {
-        abscissa: short,
+        abscissa: Axis {
+            key: Key::Spp,
+            values: vec!["64".to_owned()],
+        },
         others: axes.to_vec(),
     };
     let mut work = Work::new(request, grid.clone(), found)?;
