@@ -44,8 +44,8 @@
 //! ```
 //!
 //! [`Scene::load`] reads a scene file; every key of the format is listed in `scenes/README.md`.
-//! [`Render`] has methods for a part of the picture, further [layers](Layer), spectral
-//! [bins](BinGrid), a limit of time, and a [wanted error](Render::aim).
+//! [`Render`] takes a part of the picture, further [layers](Layer), spectral [bins](BinGrid), a limit
+//! of time, and a [wanted error](Render::aim).
 //!
 //! # A ray and a proof
 //!
@@ -167,12 +167,12 @@
 //! planted → math
 //! material → declare, planted, sample, spectrum, math
 //! shape → field, root, math
-//! camera → sample, math
-//! light → shape, sample, math
+//! camera → declare, sample, math
+//! light → declare, shape, sample, spectrum, math
 //! integrate → camera, light, material, planted, shape, sample, spectrum, math
 //! stats →
 //! film → sample, spectrum, math
-//! scene → camera, declare, field, material, shape, sample, spectrum, math
+//! scene → camera, declare, field, light, material, shape, sample, spectrum, math
 //! plan → scene, integrate, film, camera, declare, light, material, shape, sample, spectrum, math
 //! render → plan, scene, integrate, film, camera, shape, sample, spectrum, stats, math
 //! compare → scene, film, spectrum, stats
@@ -219,7 +219,7 @@ pub use render::session::{Mean, Progress, Rendered};
 pub use render::tile::{Outside, Window};
 pub use render::trace::{First, FirstHit, Found, Singular, Tracer};
 pub use scene::{Diagnostic, Origin, Overrides, Scene, SceneError};
-pub use shape::implicit::certified::Tier;
+pub use shape::Tier;
 pub use stats::Estimate;
 
 /// The rooms, for this repository's own tests, benchmarks and command line. Nothing is promised of
@@ -237,7 +237,6 @@ pub mod inside {
     #[cfg(feature = "study")]
     rooms! { chart study }
 
-    #[cfg(feature = "planted")]
     pub use etalon_lanes::planted;
     pub use etalon_lanes::{
         camera, declare, field, integrate, light, material, math, root, sample, shape, spectrum,

@@ -9,11 +9,11 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use etalon::inside::compare::{LEVEL, flip, judge};
-use etalon::inside::film::provenance::hash;
+use etalon::inside::film::hash;
 use etalon::inside::film::spectral::channel_name;
 use etalon::inside::film::{exr, names};
 use etalon::inside::stats::student;
-use etalon::{Attribute, Channel, Picture, Side};
+use etalon::{Attribute, Channel, Picture, Side, Values};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::Value;
@@ -235,6 +235,32 @@ fn a_number_can_be_the_truth() {
     expect(&output, 1, &["NOT consistent"]);
     let (output, _directory) = compare(&a, None, &[]);
     expect(&output, 2, &["B.exr"]);
+}
+
+#[test]
+fn a_band_that_is_black_in_both_pictures_is_said_to_be() {
+    let dark = |seed: u64| {
+        let mut picture = HONEST.seed(seed).picture(false);
+        let of_blue = ["B", "standard_error.B"];
+        let blue = picture.channels.iter_mut();
+        for channel in blue.filter(|c| of_blue.contains(&c.name.as_str())) {
+            channel.values = Values::F32(vec![0.0; EDGE * EDGE]);
+        }
+        picture
+    };
+    let (output, _directory) = compare(&dark(1), Some(&dark(2)), &[]);
+    expect(
+        &output,
+        0,
+        &["black in both pictures", "undefined", "consistent"],
+    );
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(!said.contains("NaN"), "{said}");
+    assert_eq!(said.matches("black").count(), 1, "{said}");
+    // Black in one picture only is a difference.
+    let (output, _directory) = compare(&HONEST.picture(false), Some(&dark(2)), &[]);
+    expect(&output, 1, &["B: the image mean is off", "NOT consistent"]);
+    assert!(!String::from_utf8(output.stdout).unwrap().contains("black"));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Fresnel reflectances against published formulas, over both kinds of interface and to the edges.
 
-use etalon::inside::light::LightShape;
+use etalon::inside::light::{DirectionalLight, LightShape, PointLight};
 use etalon::inside::material::fresnel::{conductor, dielectric_reflectance};
 use etalon_doors::fresnel::dielectric;
 
@@ -180,6 +180,6 @@ fn conductors_match_the_table() {
 /// Lights that scattered rays cannot hit need no weight; surfaces do.
 #[test]
 fn only_lights_with_extent_are_weighted() {
-    assert!(!LightShape::Point([0.0f32; 3]).has_extent());
-    assert!(!LightShape::Directional([0.0f64, 0.0, 1.0]).has_extent());
+    assert!(!LightShape::Point(PointLight([0.0f32; 3])).has_extent());
+    assert!(!LightShape::Directional(DirectionalLight([0.0f64, 0.0, 1.0])).has_extent());
 }

@@ -55,6 +55,40 @@ fn a_picture_holds_what_it_takes_to_make_it_again() {
 }
 
 #[test]
+fn a_picture_says_where_it_comes_from_once() {
+    let mirror = SCENE.replace("{ diffuse = 0.5 }", "{ mirror = \"Ag\" }");
+    let lights = "[[light]]\npoint = { at = [0, 9, 0], intensity = 1 }\n".repeat(2);
+    let limited = SCENE.replace("spp = 8", "spp = 8, max_depth = 2");
+    let [unlimited, limited] = [format!("{mirror}\n{lights}"), limited].map(|text| {
+        let mut render = Render::new(Scene::parse(&text).unwrap()).unwrap();
+        render.reseed(u64::MAX);
+        let picture = render.picture(&render.run()).unwrap();
+        picture.check().unwrap();
+        picture
+    });
+    assert_eq!(text(&unlimited, "seed"), "18446744073709551615");
+    assert_eq!(unlimited.attribute("spp"), Some(&Attribute::Int(8)));
+    assert_eq!(unlimited.attribute("nanCount"), Some(&Attribute::Int(0)));
+    assert_eq!(text(&unlimited, "maxDepth"), "unlimited");
+    assert!(unlimited.attribute("energyCutByMaxDepth").is_none());
+    let lights =
+        "point light 0 by way of mirrors and glass, point light 1 by way of mirrors and glass";
+    assert_eq!(text(&unlimited, "lightsLeftOut"), lights);
+
+    assert_eq!(limited.attribute("maxDepth"), Some(&Attribute::Int(2)));
+    let cut = limited.attribute("energyCutByMaxDepth");
+    assert!(
+        matches!(cut, Some(Attribute::Double(share)) if (0.0..1.0).contains(share)),
+        "{cut:?}"
+    );
+    assert_eq!(text(&limited, "lightsLeftOut"), "none");
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
+    for (name, _) in &limited.attributes {
+        assert!(name.chars().all(plain), "{name}");
+    }
+}
+
+#[test]
 fn means_over_regions_are_those_of_their_pixels() {
     let render = Render::new(Scene::parse(SCENE).unwrap()).unwrap();
     let whole = render.run();

@@ -11,8 +11,8 @@ use etalon::inside::field::normal::outward;
 use etalon::inside::math::affine::Affine;
 use etalon::inside::scene::{FinderChoice, Implicit};
 use etalon::inside::shape::implicit::certified::Workspace;
-use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
-use etalon::inside::shape::{Query, Ray};
+use etalon::inside::shape::implicit::placed::{ImplicitAnswer, PlacedImplicit};
+use etalon::inside::shape::{Query, Ray, Tally};
 use etalon_doors::fields::values_and_gradients;
 use glam::DVec3;
 use num_bigint::BigInt;
@@ -22,6 +22,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::{PRECISIONS, Precision, everywhere};
+use crate::polynomial_support::{gradient, value};
 
 fn expression(text: &str) -> Expression {
     parse(text, &[]).expect(text)
@@ -79,13 +80,12 @@ fn gradients_of_named_surfaces_are_exact_but_for_rounding() {
     for surface in SURFACES {
         let expression = surface.field(&[]).expect("a field");
         let field = Field::new(&expression.tape);
-        let exact_gradient = expression.polynomial.expect("a polynomial").gradient();
+        let exact_gradient = gradient(&expression.polynomial.expect("a polynomial"));
         for _ in 0..100 {
             let p = random_point(&mut random, surface.half_width);
-            let wanted = exact_gradient.each_ref().map(|d| {
-                let value = d.value_at(p.to_array()).expect("finite");
-                value.to_f64().expect("finite")
-            });
+            let point = p.to_array().map(exact);
+            let wanted = exact_gradient.each_ref();
+            let wanted = wanted.map(|d| value(d, &point).to_f64().expect("finite"));
             let wanted = DVec3::from_array(wanted);
             let (bounded, error) = bounded::gradient(&field, p, 0.0);
             assert_eq!(bounded, field.gradient(p), "{}", surface.name);
@@ -321,7 +321,7 @@ fn closed_surfaces_have_caps() {
             t_min: 0.0,
             t_max: f64::INFINITY,
         };
-        let (mut workspace, mut tally) = (Workspace::default(), ImplicitTally::default());
+        let (mut workspace, mut tally) = (Workspace::default(), Tally::default());
         match placed.first_hit(&query, &mut workspace, &mut tally) {
             ImplicitAnswer::Found(hit) => Some((hit.t, hit.normal)),
             ImplicitAnswer::Absent => None,

@@ -14,8 +14,8 @@ use etalon::inside::field::expression::parse;
 use etalon::inside::math::affine::Affine;
 use etalon::inside::scene::{FinderChoice, Implicit};
 use etalon::inside::shape::implicit::certified::Workspace;
-use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
-use etalon::inside::shape::{Query, Ray};
+use etalon::inside::shape::implicit::placed::{ImplicitAnswer, PlacedImplicit};
+use etalon::inside::shape::{Query, Ray, Tally};
 use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -125,7 +125,7 @@ fn ask(placed: &PlacedImplicit, ray: Ray, workspace: &mut Workspace) -> Implicit
         t_min: 0.0,
         t_max: f64::INFINITY,
     };
-    placed.first_hit(&query, workspace, &mut ImplicitTally::default())
+    placed.first_hit(&query, workspace, &mut Tally::default())
 }
 
 const FINDERS: [FinderChoice; 4] = [

@@ -9,7 +9,7 @@
 
 use etalon::inside::field::tape::{Binary, Operation, Tape};
 use etalon::inside::math::affine::Affine;
-use etalon::inside::shape::implicit::certified::{Answers, Certified, Packet, Wish, Workspace};
+use etalon::inside::shape::implicit::certified::{Answers, Certified, Effort, Packet, Workspace};
 use etalon::{Instructions, Tier};
 use glam::DVec3;
 use num_bigint::BigInt;
@@ -144,7 +144,7 @@ fn invented_polynomials_are_isolated_as_they_were_made() {
     let mut random = Pcg64Mcg::seed_from_u64(3);
     let sets = Instructions::all().into_iter();
     let mut workspaces: Vec<Workspace> = sets.map(Workspace::new).collect();
-    let wish = Wish {
+    let effort = Effort {
         sharp: true,
         exact: true,
     };
@@ -161,7 +161,7 @@ fn invented_polynomials_are_isolated_as_they_were_made() {
             packet.set(0, origin, direction, [0.0, f64::INFINITY]);
             let all = workspaces.iter_mut();
             let all: Vec<Answers> = all
-                .map(|w| certified.first_hits(&packet, wish, w))
+                .map(|w| certified.first_hits(&packet, effort, w))
                 .collect();
             let answers = all[0];
             let same = |other: &Answers| known(other, 0) == known(&answers, 0);

@@ -14,13 +14,12 @@ use etalon::inside::field::normal::SHARP;
 use etalon::inside::math::affine::Affine;
 use etalon::inside::scene::{FinderChoice, Implicit};
 use etalon::inside::shape::implicit::certified::{
-    Answers, Certified, Packet, WIDTH, Wish, Workspace,
+    Answers, Certified, Effort, Packet, WIDTH, Workspace,
 };
-use etalon::inside::shape::implicit::placed::{
-    ImplicitAnswer, ImplicitHit, ImplicitTally, PlacedImplicit,
-};
-use etalon::inside::shape::{Query, Ray};
+use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitHit, PlacedImplicit};
+use etalon::inside::shape::{Query, Ray, Tally};
 use etalon::{Instructions, Tier};
+use etalon_doors::shapes::without_bounds;
 
 use crate::oracle_support::{IMPLICIT, OracleShape, Row, number, rows, shapes, vector};
 
@@ -117,7 +116,7 @@ fn normal_fault(row: &Row, hit: &ImplicitHit) -> Option<String> {
 }
 
 /// Faults and tally of all rays, the same on every instruction set.
-fn trace(finder: FinderChoice) -> (Vec<String>, ImplicitTally) {
+fn trace(finder: FinderChoice) -> (Vec<String>, Tally) {
     let surfaces = placed(finder);
     let all = Instructions::all().into_iter();
     let mut each = all.map(|instructions| trace_on(instructions, &surfaces));
@@ -129,8 +128,8 @@ fn trace(finder: FinderChoice) -> (Vec<String>, ImplicitTally) {
 fn trace_on(
     instructions: Instructions,
     surfaces: &BTreeMap<String, (PlacedImplicit, f64)>,
-) -> (Vec<String>, ImplicitTally) {
-    let (mut workspace, mut tally) = (Workspace::new(instructions), ImplicitTally::default());
+) -> (Vec<String>, Tally) {
+    let (mut workspace, mut tally) = (Workspace::new(instructions), Tally::default());
     let mut faults = Vec::new();
     for row in &rows(IMPLICIT) {
         let (surface, half) = &surfaces[&row["shape"]];
@@ -171,7 +170,7 @@ fn the_baseline_is_wrong_where_it_is_known_to_be() {
 #[test]
 fn second_hits_from_printed_points() {
     let surfaces = placed(FinderChoice::Auto);
-    let (mut workspace, mut tally) = (Workspace::default(), ImplicitTally::default());
+    let (mut workspace, mut tally) = (Workspace::default(), Tally::default());
     let table = rows(IMPLICIT);
     let first: HashMap<&str, &Row> = table.iter().map(|row| (row["id"].as_str(), row)).collect();
     let mut faults = Vec::new();
@@ -208,13 +207,13 @@ fn second_hits_from_printed_points() {
 /// The same second hits as the path loop finds them: from t = 0, the surface it leaves being known.
 #[test]
 fn second_hits_of_rays_that_leave() {
-    let (mut workspace, mut tally) = (Workspace::default(), ImplicitTally::default());
+    let (mut workspace, mut tally) = (Workspace::default(), Tally::default());
     let table = rows(IMPLICIT);
     let first: HashMap<&str, &Row> = table.iter().map(|row| (row["id"].as_str(), row)).collect();
     let surfaces = surfaces();
     let placed = placed(FinderChoice::Auto);
     let mut faults = Vec::new();
-    let wish = Wish {
+    let effort = Effort {
         sharp: false,
         exact: true,
     };
@@ -238,7 +237,7 @@ fn second_hits_of_rays_that_leave() {
         packet.set(0, hit.point, direction, [0.0, f64::INFINITY]);
         packet.leaving = 1;
         let certified = &certified[&ray["shape"]];
-        let answers = certified.first_hits(&packet, wish, &mut workspace);
+        let answers = certified.first_hits(&packet, effort, &mut workspace);
         let right = if answers.found & 1 == 1 {
             row["hit2"] == "1" && (answers.t[0] - number(row, "t2")).abs() < 1e-5
         } else {
@@ -263,9 +262,9 @@ pub fn known(answers: &Answers, lane: usize) -> ([bool; 2], [u64; 3], u32, Tier)
     )
 }
 
-/// Rays in a stream have the answers they have alone, on every instruction set.
+/// Rays have the same answers in company as alone, on every instruction set.
 #[test]
-fn streams_agree_with_single_packets() {
+fn full_packets_agree_with_single_rays() {
     let sets = Instructions::all().into_iter();
     let mut workspaces: Vec<Workspace> = sets.map(Workspace::new).collect();
     let table = rows(IMPLICIT);
@@ -282,23 +281,24 @@ fn streams_agree_with_single_packets() {
             }
             packet
         };
-        let packets: Vec<Packet> = rays.chunks(WIDTH).map(packet).collect();
-        for sharp in [false, true] {
-            let wish = Wish { sharp, exact: true };
-            let all = certified.first_hits_of_all(&packets, wish, &mut workspaces[0]);
-            for (packet, stream) in packets.iter().zip(all) {
-                for workspace in &mut workspaces {
-                    let alone = certified.first_hits(packet, wish, workspace);
-                    for lane in (0..WIDTH).filter(|lane| packet.active >> lane & 1 == 1) {
-                        let same = known(&alone, lane) == known(&stream, lane);
-                        assert!(
-                            same,
-                            "{name}, {} lane {lane} {:?} {:?}",
-                            workspace.instructions.name(),
-                            known(&alone, lane),
-                            known(&stream, lane)
-                        );
-                    }
+        for (rays, sharp) in rays
+            .chunks(WIDTH)
+            .flat_map(|rays| [(rays, false), (rays, true)])
+        {
+            let effort = Effort { sharp, exact: true };
+            let alone: Vec<Answers> = rays
+                .iter()
+                .map(|row| certified.first_hits(&packet(&[row]), effort, &mut workspaces[0]))
+                .collect();
+            for workspace in &mut workspaces {
+                let together = certified.first_hits(&packet(rays), effort, workspace);
+                for (lane, alone) in alone.iter().enumerate() {
+                    assert_eq!(
+                        known(&together, lane),
+                        known(alone, 0),
+                        "{name}, {} lane {lane}",
+                        workspace.instructions.name()
+                    );
                 }
             }
         }
@@ -310,7 +310,7 @@ fn streams_agree_with_single_packets() {
 fn bounds_of_zero_are_noticed() {
     let surfaces = surfaces();
     let mut workspace = Workspace::default();
-    let wish = Wish {
+    let effort = Effort {
         sharp: false,
         exact: true,
     };
@@ -319,7 +319,7 @@ fn bounds_of_zero_are_noticed() {
         .map(|(name, surface)| {
             let Implicit { field, inside, .. } = &surface.implicit;
             let certified = Certified::new(&field.tape, *inside, &Affine::IDENTITY);
-            (name, certified.unwrap().unwrap().without_bounds())
+            (name, without_bounds(certified.unwrap().unwrap()))
         })
         .collect();
     let wrong = rows(IMPLICIT)
@@ -329,7 +329,7 @@ fn bounds_of_zero_are_noticed() {
             let mut packet = Packet::default();
             packet.set(0, ray.origin, ray.direction, [t_min, t_max]);
             let finder = &finders[&row["shape"]];
-            let answers = finder.first_hits(&packet, wish, &mut workspace);
+            let answers = finder.first_hits(&packet, effort, &mut workspace);
             (answers.found & 1 == 1) != (row["hit"] == "1")
         })
         .count();

@@ -11,8 +11,8 @@ use std::collections::HashMap;
 use etalon::Instructions;
 use etalon::inside::math::affine::Affine;
 use etalon::inside::math::lanes::Scalar;
-use etalon::inside::shape::{Placed, Ray, ShapeKind, Tally};
-use etalon_doors::shapes::{RaySpan, spans};
+use etalon::inside::shape::{Placed, Ray, ShapeKind};
+use etalon_doors::shapes::{RaySpan, crossings, spans};
 use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -55,7 +55,7 @@ impl Record {
             return;
         }
         self.asked += 1;
-        let truth = case.placed.crossings(&answer.ray, &mut Tally::default());
+        let truth = crossings(&case.placed, &answer.ray);
         let what = || {
             let (kind, to_world) = (case.placed.kind(), case.placed.to_world());
             format!("{kind:?} {to_world:?}\n  {answer:?}\n  {truth:?}")
@@ -64,16 +64,16 @@ impl Record {
             self.wrong.push(what());
         } else if answer.miss {
             // The shape may also lie behind as a whole.
-            if truth.is_some_and(|truth| truth.far.t >= 0.0) {
+            if truth.is_some_and(|[_, far]| far.t >= 0.0) {
                 self.wrong.push(what());
             }
         } else if answer.hit {
             self.hits += 1;
-            let Some(truth) = &truth else {
+            let Some([near, far]) = &truth else {
                 self.wrong.push(what());
                 return;
             };
-            let share = share(answer.near, truth.near.t).max(share(answer.far, truth.far.t));
+            let share = share(answer.near, near.t).max(share(answer.far, far.t));
             if share > 1.0 || share.is_nan() {
                 self.wrong.push(format!("{share} of the bound: {}", what()));
             } else {

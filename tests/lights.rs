@@ -10,7 +10,8 @@ use std::f64::consts::PI;
 
 use etalon::Instructions;
 use etalon::inside::light::{
-    CubeLight, CylinderLight, LightShape, MappedLight, PlanarLight, RectangleLight, SphereLight,
+    CubeLight, CylinderLight, LightShape, MappedLight, PlanarLight, PointLight, RectangleLight,
+    SphereLight, WithoutSurface,
 };
 use etalon::inside::math::lanes::Scalar;
 use etalon_doors::Made;
@@ -50,11 +51,11 @@ impl Light {
             }
             Self::Parallelogram { centre, half } => {
                 let normal = half[0].cross(half[1]).normalize();
-                LightShape::Parallelogram(PlanarLight::new(centre, half, normal, 4.0, both))
+                LightShape::Planar(PlanarLight::new(centre, half, normal, false, both))
             }
             Self::Disk { centre, half } => {
                 let normal = half[0].cross(half[1]).normalize();
-                LightShape::Disk(PlanarLight::new(centre, half, normal, PI, both))
+                LightShape::Planar(PlanarLight::new(centre, half, normal, true, both))
             }
             Self::Sphere { centre, radius } => {
                 LightShape::Sphere(SphereLight::new(centre, radius, both))
@@ -72,7 +73,7 @@ impl Light {
             Self::Barrel { centre, half } => {
                 LightShape::Mapped(MappedLight::cylinder(centre, linear(half), both))
             }
-            Self::Point(at) => LightShape::Point(at.to_array().map(T::from_f64)),
+            Self::Point(at) => LightShape::Point(PointLight::new(at)),
         }
     }
 

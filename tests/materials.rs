@@ -87,7 +87,11 @@ fn parameters(kind: MaterialKind) -> Vec<([[f64; C]; 2], [f64; 3])> {
     let mut spectra: Vec<[f64; C]> = Vec::new();
     for quantity in quantities() {
         spectra.extend(match quantity {
-            Quantity::True | Quantity::Number { .. } => vec![],
+            Quantity::True
+            | Quantity::Number { .. }
+            | Quantity::Point
+            | Quantity::Direction
+            | Quantity::Table(_) => vec![],
             Quantity::Spectrum(_) => vec![[0.0, 0.4, 0.8, 1.0]],
             Quantity::TwoSpectra(_) => vec![[0.0, 0.2, 0.1, 0.4], [0.3, 0.0, 0.2, 0.5]],
             Quantity::Metal => vec![[1.4, 0.8, 0.2, 0.1], [1.8, 2.0, 3.0, 4.0]],
@@ -656,6 +660,8 @@ fn written(declaration: &Declaration, number: impl Fn(&Range) -> f64) -> String 
         Quantity::TwoSpectra(_) => "[0.2, 0.3]".to_owned(),
         Quantity::Metal => "\"Ag\"".to_owned(),
         Quantity::Glass => "{ ior = 1.5 }".to_owned(),
+        Quantity::Point | Quantity::Direction => "[1, 2, 3]".to_owned(),
+        Quantity::Table(_) => unreachable!("no material has a table"),
     };
     let mut main = value(declaration.main.quantity);
     if let Some(within) = declaration.within {

@@ -8,11 +8,11 @@
 
 use std::f64::consts::TAU;
 
-use etalon::inside::doors::material::{C, Setting, Subject, evaluate_each};
 use etalon::inside::material::Transport;
 use etalon::inside::math::instructions::Precision;
 use etalon::inside::stats::family::sidak;
 use etalon::{Estimate, Render, Scene};
+use etalon_doors::material::{C, Setting, Subject, evaluate_each};
 use glam::DVec3;
 
 fn mean(text: &str) -> Estimate {

@@ -151,7 +151,7 @@ fn true_worst_block(ready: &mut Ready, samples: u32) -> f64 {
     let mut sums: Vec<f64> = Vec::new();
     for run in 0..MANY {
         let rendered = render(ready, (1 << 40) + run, samples);
-        let blocks = etalon::inside::render::blocks::luminances(&rendered);
+        let blocks = rendered.block_luminances();
         sums.resize(blocks.len(), 0.0);
         for (sum, block) in sums.iter_mut().zip(&blocks) {
             let relative = block.standard_error / block.value.max(f64::MIN_POSITIVE);

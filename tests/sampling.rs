@@ -544,13 +544,13 @@ fn standard_errors_are_honest() {
         })
         .collect();
     let drawn = drawn(Precision::Single, &sequence, Numbers::Camera, &requests);
-    let mut film = Pixels::new(pixels as usize, replicates);
+    let mut film = Pixels::new(pixels as usize, replicates, spp);
     for (k, numbers) in drawn.iter().enumerate() {
         let (pixel, i) = (k as u32 / spp, k as u32 % spp);
         let value = f64::from(u8::from(numbers[0] < p));
         film.add(pixel as usize, i..i + 1, &[[value, 2.0 * value, 1.0]]);
     }
-    let counts = film.counts(spp);
+    let counts = replicates.counts(spp);
     let estimates: Vec<_> = (0..pixels as usize)
         .map(|i| film.estimate(i, &counts, |xyz| xyz))
         .collect();
@@ -570,7 +570,7 @@ fn standard_errors_are_honest() {
     let naive = p * (1.0 - p) / f64::from(spp);
     assert!(t_test(&squares, naive) < level());
     // A single replicate has no standard error, and says so.
-    let mut film = Pixels::new(1, Replicates::Fixed(1));
+    let mut film = Pixels::new(1, Replicates::Fixed(1), u32::MAX);
     film.add(0, 0..1, &[[1.0; 3]]);
     assert!(film.estimate(0, &[1.0], |xyz| xyz).standard_error[0].is_nan());
 }

@@ -12,8 +12,9 @@ use etalon::inside::math::double_double::DoubleDouble;
 use etalon::inside::math::exact::Exact;
 use etalon::inside::math::number::{Bounded, Number};
 use etalon::inside::shape::ladder::{Question, ScaledRay};
-use etalon::inside::shape::question::{First, Limits, Through};
+use etalon::inside::shape::question::{FirstCrossing, Limits};
 use etalon::inside::shape::{Placed, Ray, ShapeKind, SingularMatrix, Start, Tally};
+use etalon_doors::shapes::{Through, crossings};
 use glam::{DMat3, DQuat, DVec3};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -142,7 +143,7 @@ impl Decided {
     where
         Q: Question<Answer: PartialEq + std::fmt::Debug>,
     {
-        let ladder = placed.ladder();
+        let ladder = &placed.ladder;
         let truth = question.ask(&ladder.exact.local(ray));
         assert!(truth.is_some(), "exact numbers must decide: {what}");
         let double = question.ask(&ladder.double.local(ray));
@@ -176,7 +177,7 @@ fn lower_rungs_never_contradict_the_exact_one() {
         for start in [Start::Free, Start::OnSurfaceInward] {
             let limits = &Limits::new(t_min, f64::INFINITY).unwrap();
             let (ray, limits) = (&scaled, limits);
-            let first = First {
+            let first = FirstCrossing {
                 kind,
                 ray,
                 limits,
@@ -292,10 +293,10 @@ fn a_start_on_the_surface_counts_the_far_crossing_only() {
             ..ray
         };
         let exit = body.first_hit(&inward, 0.0, Start::OnSurfaceInward, &mut tally);
-        let both = body.crossings(&ray, &mut tally).unwrap();
-        assert_eq!(both.near.t, entry.t);
+        let [near, far] = crossings(&body, &ray).unwrap();
+        assert_eq!(near.t, entry.t);
         if let Some(exit) = exit {
-            assert!(!exit.front && both.far.t >= both.near.t);
+            assert!(!exit.front && far.t >= near.t);
         }
         assert!(
             body.first_hit(&inward, 0.0, Start::Excluded, &mut tally)

@@ -5,7 +5,8 @@
     reason = "the tests' own scenes are hit by construction"
 )]
 
-use etalon::inside::shape::{Placed, Query, Ray, Rung, ShapeKind, Start, Tally, nearest, occluded};
+use etalon::inside::shape::list::{nearest, occluded};
+use etalon::inside::shape::{Placed, Query, Ray, ShapeKind, Start, Tally, Tier};
 use glam::DVec3;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -14,6 +15,10 @@ use crate::shape_ladder::{KINDS, cubed, decade, placed};
 
 fn free(_: usize) -> Start {
     Start::Free
+}
+
+fn all(objects: &[Placed]) -> impl Iterator<Item = (usize, &Placed)> {
+    objects.iter().enumerate()
 }
 
 fn along(origin: DVec3, direction: DVec3) -> Query {
@@ -34,7 +39,7 @@ fn equal_t_goes_by_priority_then_index() {
     let up = along(DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.01, 0.03, 0.1));
     for (first, priority) in [(0, [0, 0]), (0, [0, 1]), (1, [1, 0])] {
         let mut tally = Tally::default();
-        let (index, hit) = nearest(&cubes, &up, free, |i| priority[i], &mut tally).unwrap();
+        let (index, hit) = nearest(all(&cubes), &up, free, |i| priority[i], &mut tally).unwrap();
         assert_eq!(index, first);
         // 0.7 / 0.1 with the exact values of these doubles rounds to 7.
         assert!((hit.t - 7.0).abs() < 1e-14 && hit.local[2].abs() == 1.0);
@@ -53,7 +58,7 @@ fn equal_irrational_t_is_recognised_and_the_smallest_difference_too() {
     let flat = along(DVec3::new(-3.0, 0.1, 0.0), DVec3::new(0.7, 0.1, 0.0));
     for first in [0, 1] {
         let winner = |i: usize| u8::from(i != first);
-        let (index, _) = nearest(&round, &flat, free, winner, &mut Tally::default()).unwrap();
+        let (index, _) = nearest(all(&round), &flat, free, winner, &mut Tally::default()).unwrap();
         assert_eq!(index, first);
     }
     // Spheres 2⁻²⁰⁰ apart: whatever the priority, the nearer one is nearer.
@@ -65,8 +70,8 @@ fn equal_irrational_t_is_recognised_and_the_smallest_difference_too() {
         let ray = along(DVec3::new(side, 0.1, 0.2), DVec3::new(-side, 0.05, 0.1));
         let loser = |i: usize| u8::from(i == first);
         let mut tally = Tally::default();
-        let (index, hit) = nearest(&spheres, &ray, free, loser, &mut tally).unwrap();
-        assert_eq!((index, tally.exact, hit.rung), (first, 1, Rung::Double));
+        let (index, hit) = nearest(all(&spheres), &ray, free, loser, &mut tally).unwrap();
+        assert_eq!((index, tally.exact, hit.tier), (first, 1, Tier::Double));
     }
 }
 
@@ -86,7 +91,7 @@ fn nearest_agrees_with_the_hits_one_by_one() {
             .filter_map(|o| o.first_hit(&query.ray, 0.0, Start::Free, &mut tally))
             .map(|hit| hit.t)
             .min_by(f64::total_cmp);
-        let several = nearest(&objects, &query, free, |_| 0, &mut tally).map(|(_, hit)| hit);
+        let several = nearest(all(&objects), &query, free, |_| 0, &mut tally).map(|(_, hit)| hit);
         assert_eq!(single, several.map(|hit| hit.t));
         let Some(t) = single else { continue };
         found += 1;
@@ -100,10 +105,15 @@ fn nearest_agrees_with_the_hits_one_by_one() {
                 ..query
             },
         );
-        assert!(!occluded(&objects, &before, free, &mut tally));
-        assert!(occluded(&objects, &past, free, &mut tally));
-        assert!(!occluded(&objects, &past, |_| Start::Excluded, &mut tally));
-        assert!(nearest(&objects, &before, free, |_| 0, &mut tally).is_none());
+        assert!(!occluded(all(&objects), &before, free, &mut tally));
+        assert!(occluded(all(&objects), &past, free, &mut tally));
+        assert!(!occluded(
+            all(&objects),
+            &past,
+            |_| Start::Excluded,
+            &mut tally
+        ));
+        assert!(nearest(all(&objects), &before, free, |_| 0, &mut tally).is_none());
     }
     assert!(found > 100);
 }
@@ -130,7 +140,7 @@ fn limits_are_strict_except_at_zero() {
     assert_eq!(t(1.0, 0.0), Some(0.0));
     let query = |t_min, t_max| Query { ray, t_min, t_max };
     let cubes = [cube.clone()];
-    let blocked = |q: Query| occluded(&cubes, &q, free, &mut Tally::default());
+    let blocked = |q: Query| occluded(all(&cubes), &q, free, &mut Tally::default());
     assert!(!blocked(query(0.0, 1.0)) && blocked(query(0.0, 1.0 + f64::EPSILON)));
     assert!(!blocked(query(1.0, 3.0)) && blocked(query(0.0, f64::INFINITY)));
     let touching = Query {

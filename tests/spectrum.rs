@@ -10,13 +10,19 @@ use etalon::inside::spectrum::ior::{
     RefractiveIndex, glass_names, metal_names, named_glass, named_metal,
 };
 use etalon::inside::spectrum::observer::{
-    LUMINOUS_EFFICACY, REC_709, XYZ_TO_LINEAR_SRGB, Y_INTEGRAL, spectrum_to_xyz, xyz_bar,
-    xyz_to_linear_srgb, xyz_to_rgb_from_chromaticities,
+    XYZ_TO_LINEAR_SRGB, Y_INTEGRAL, spectrum_to_xyz, xyz_bar, xyz_to_linear_srgb,
 };
 use etalon::inside::spectrum::rgb::{fit_emission, fit_reflectance};
-use etalon::inside::spectrum::wavelengths::{WavelengthPdf, hero_relative_variance};
 use etalon::inside::spectrum::{NM_MAX, NM_MIN, RgbError, Spectrum, Table, TableError, illuminant};
 use serde_json::Value;
+
+use crate::wavelength_pdfs::{WavelengthPdf, hero_relative_variance};
+
+/// Luminous efficacy that belongs to ȳ, lm/W (CIE 018:2019: 683 lm/W at 540 THz, in air 555.017 nm).
+const LUMINOUS_EFFICACY: f64 = 683.002;
+
+/// Chromaticities x, y of the red, green and blue primary and the white of Rec. ITU-R BT.709-6.
+const REC_709: [[f64; 2]; 4] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]];
 
 /// Fraunhofer lines d, F and C in nm.
 const LINE_D: f64 = 587.5618;
@@ -163,7 +169,7 @@ fn bounds_hold_everywhere_and_are_attained() {
             min <= low && high <= max,
             "{spectrum:?}: {min} {low} {high} {max}"
         );
-        if !matches!(spectrum, Spectrum::SigmoidD65 { .. }) {
+        if !matches!(spectrum, Spectrum::Sigmoid { d65: true, .. }) {
             // Steps of 0.01 nm miss an extremum of these curves by less than this.
             assert_absolute(max, high, 1e-7 * high.abs());
             assert_absolute(min, low, 1e-7 * high.abs());
@@ -176,7 +182,7 @@ fn only_constant_spectra_are_constant() {
     let table = |nm: &[f64], values: &[f64]| {
         Spectrum::Table(Table::new(nm.to_vec(), values.to_vec()).unwrap())
     };
-    assert!(Spectrum::equal_energy(2.0).is_constant());
+    assert!(Spectrum::Constant(2.0).is_constant());
     assert!(table(&[360.0, 830.0], &[0.5, 0.5]).is_constant());
     assert!(!table(&[361.0, 830.0], &[0.5, 0.5]).is_constant());
     assert!(!table(&[300.0, 400.0, 900.0], &[0.5, 0.6, 0.5]).is_constant());
@@ -228,7 +234,7 @@ fn the_constant_of_y_is_the_trapezoid_sum() {
 fn equal_energy_has_luminance_one() {
     for value in [1.0, 0.18, 1e6] {
         // A thousand additions of positive numbers.
-        let [_, y, _] = spectrum_to_xyz(&Spectrum::equal_energy(value));
+        let [_, y, _] = spectrum_to_xyz(&Spectrum::Constant(value));
         assert_relative(y, value, 1e-14);
     }
 }
@@ -263,6 +269,16 @@ fn the_product_of_two_linear_pieces_is_integrated_exactly() {
         want += (b - a) / 6.0 * (f(a) + 4.0 * f(0.5 * (a + b)) + f(b));
     }
     assert_relative(spectrum_to_xyz(&spectrum)[1], want / Y_INTEGRAL, 1e-13);
+}
+
+/// The matrix from XYZ to linear RGB for primaries and white given as chromaticities, Y of the
+/// white being 1 (SMPTE RP 177-1993). For [`REC_709`] its first element is 3.2409699.
+fn xyz_to_rgb_from_chromaticities(chromaticities: [[f64; 2]; 4]) -> [[f64; 3]; 3] {
+    let xyz = chromaticities.map(|[x, y]| glam::DVec3::new(x / y, 1.0, (1.0 - x - y) / y));
+    let primaries = glam::DMat3::from_cols(xyz[0], xyz[1], xyz[2]);
+    let weights = primaries.inverse() * xyz[3];
+    let to_xyz = primaries * glam::DMat3::from_diagonal(weights);
+    to_xyz.inverse().transpose().to_cols_array_2d()
 }
 
 #[test]
@@ -548,10 +564,7 @@ fn formulas_by_hand() {
     assert!(cauchy.disperses());
     assert!(!RefractiveIndex::Cauchy(vec![1.5, 0.0]).disperses());
     assert!(!RefractiveIndex::Constant(1.5).disperses());
-    let resonant = RefractiveIndex::Sellmeier {
-        b: [1.0, 0.0, 0.0],
-        c: [0.25, 0.0, 0.0],
-    };
+    let resonant = RefractiveIndex::sellmeier([1.0, 0.0, 0.0], [0.25, 0.0, 0.0]);
     assert!(
         resonant.check().is_err(),
         "no index on the resonance at 500 nm"

@@ -10,7 +10,7 @@ use std::process::{Command, Output, Stdio};
 
 use etalon::inside::chart::row::{self, Row};
 use etalon::inside::chart::{Key, curves};
-use etalon::inside::film::{exr, provenance};
+use etalon::inside::film::{self, exr};
 use etalon::inside::study::axis::Axis;
 use etalon::{Attribute, Picture};
 use tempfile::TempDir;
@@ -261,7 +261,7 @@ fn references_that_are_none_are_refused_with_a_reason() {
         exr::write(&studio.path().join("reference.exr"), &picture).unwrap();
     };
     let study = || studio.refused(&["study", "ball.toml", "--reference", "reference.exr"]);
-    let hash = provenance::hash(SCENE);
+    let hash = film::hash(SCENE);
     reference([8, 8], 1.0, Some(0.0), &hash);
     assert!(study().contains("8x8 pixels, the scene 16x8"));
     reference([16, 8], f32::NAN, Some(0.0), &hash);
@@ -272,7 +272,7 @@ fn references_that_are_none_are_refused_with_a_reason() {
     assert!(study().contains("variance.R"));
     reference([16, 8], 1.0, None, &hash);
     assert!(study().contains("no channels variance.R"));
-    reference([16, 8], 1.0, Some(0.0), &provenance::hash("another"));
+    reference([16, 8], 1.0, Some(0.0), &film::hash("another"));
     let message = study();
     assert!(
         message.contains("shows another scene") && message.contains(&hash),

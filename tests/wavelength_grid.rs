@@ -10,9 +10,8 @@ use etalon::inside::integrate::develop::Spectrometer;
 use etalon::inside::integrate::pool::Rows;
 use etalon::inside::math::lanes::Scalar;
 use etalon::inside::spectrum::cells::means;
-use etalon::inside::spectrum::grid::{CELLS, SpectrumBank, WavelengthGrid};
+use etalon::inside::spectrum::grid::{CELLS, SpectrumBank, WavelengthGrid, visible_wavelength};
 
-use etalon::inside::spectrum::wavelengths::WavelengthPdf;
 use etalon::inside::spectrum::{Spectrum, Table};
 
 use crate::truth_file::{list, number, truth};
@@ -24,7 +23,7 @@ fn the_cumulative_density_is_the_published_one() {
     let us = list(&truth["setup"]["u"]);
     for (u, nm) in us.iter().zip(list(&truth["exact"]["lam"])) {
         let (u, nm) = (number(u), number(nm));
-        let got = WavelengthPdf::Visible.sample(u);
+        let got = visible_wavelength(u);
         assert!((got - nm).abs() < 1e-9, "{got} {nm}");
         // The chord of a cell is off by at most w²/8 of the second derivative −2 a tanh λ'² of
         // λ(u), where λ' is w a cell, below 1.1 nm.
@@ -109,7 +108,7 @@ fn steep_flanks_are_jumps_and_flat_tables_are_none() {
     );
     let smooth = [
         Spectrum::d65(1.0),
-        Spectrum::constant(0.5),
+        Spectrum::Constant(0.5),
         step(300.0, 900.0),
     ];
     assert_eq!(WavelengthGrid::new(&smooth), WavelengthGrid::default());

@@ -1,19 +1,19 @@
-//! What can be asked for on the command line.
+//! The commands and their arguments.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
-use etalon::Overrides;
 use etalon::inside::chart::figures::USUAL_ERROR;
-use etalon::inside::render::Instructions;
 use etalon::inside::study::axis::Axis;
 use etalon::inside::study::choice::Choice;
+use etalon::{Instructions, Overrides, Scene, Window};
 
 use super::values::{
-    Crop, GoalTarget, Layer, Panels, Pixel, PlanChoice, Seconds, Size, axis, finite, instructions,
-    setting, share,
+    Layer, axis, crop, finite, instructions, layer, pixel, seconds, setting, share, size,
 };
+use super::{Failure, scene_words};
 
 /// A physically based spectral renderer, and the instrument that proves its pictures right.
 #[derive(Debug, Parser)]
@@ -25,17 +25,15 @@ use super::values::{
                   Example: etalon render scenes/spheres.toml -o spheres.exr"
 )]
 pub struct Arguments {
-    /// What to do.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Render a scene to an OpenEXR file with its standard error and provenance.
     Render(Box<Render>),
-    /// Say what is in a scene, what it needs, and what will be done about it.
+    /// Show what is in a scene, what it needs, and how it will be rendered.
     Info(Info),
     /// Intersect given rays with a scene and print the hits as CSV.
     Trace(Trace),
@@ -57,6 +55,9 @@ pub struct SceneArguments {
     /// The scene file (TOML).
     #[arg(value_name = "SCENE.toml")]
     pub scene: PathBuf,
+    /// The panel (named variant) of the scene; `etalon render` takes `all` of them too.
+    #[arg(long, value_name = "NAME")]
+    pub panel: Option<String>,
     /// Lay this over the scene after the panel: a dotted key and a TOML value or a bare word.
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
@@ -64,24 +65,35 @@ pub struct SceneArguments {
     /// interval, polynomial.
     #[arg(long, value_name = "NAME")]
     pub finder: Option<String>,
+    /// Seed of all randomness.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub seed: Option<String>,
 }
 
 impl SceneArguments {
     /// What is laid over the file: the panel, each `--set` in order, then the options that stand
     /// for keys of `[image]`. Values are the scene's to check.
-    pub fn overrides(&self, panel: Option<&str>, image: &[(&str, Option<String>)]) -> Overrides {
-        let options = image
-            .iter()
-            .filter_map(|(key, value)| Some((format!("image.{key}"), value.clone()?)));
+    pub fn overrides(&self, image: &[(&str, &Option<String>)]) -> Overrides {
+        let mut set = self.set.clone();
+        let own = ("seed", &self.seed);
+        for (key, value) in image.iter().chain([&own]) {
+            let option = |value: &String| (format!("image.{key}"), value.clone());
+            set.extend(value.as_ref().map(option));
+        }
         Overrides {
-            panel: panel.map(str::to_owned),
-            set: self.set.iter().cloned().chain(options).collect(),
+            panel: self.panel.clone(),
+            set,
             finder: self.finder.clone(),
         }
     }
+
+    /// Reads the scene with these overrides.
+    pub fn load(&self) -> Result<Scene, Failure> {
+        let scene = Scene::load_with(&self.scene, &self.overrides(&[]));
+        Ok(scene.map_err(|error| scene_words(&error))?)
+    }
 }
 
-/// Arguments of `etalon render`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Beside the picture goes a PNG to look at, its exposure chosen for the eye. --time and Ctrl-C stop \
@@ -97,21 +109,16 @@ Examples:
   etalon render scenes/spheres.toml --time 60 --set materials.glass.glass=N-SF11
   etalon render scenes/spheres.toml --target-error 0.02 --target block")]
 pub struct Render {
-    /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
     /// The picture to write; by default the scene's name, with the panel's, ending in .exr.
     #[arg(short, long, value_name = "OUT.exr")]
     pub output: Option<PathBuf>,
-    /// The panel (named variant) to render, or `all` of them.
-    #[arg(long, value_name = "NAME|all")]
-    pub panel: Option<Panels>,
-    /// Options that stand for keys of `[image]`.
     #[command(flatten)]
     pub image: ImageOptions,
     /// Stop after this time, between passes.
-    #[arg(long, value_name = "SECONDS")]
-    pub time: Option<Seconds>,
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub time: Option<Duration>,
     /// Take as many samples as this standard error over mean needs: pilots with seeds of their own
     /// choose the number and are thrown away, so that the choice does not bend the picture.
     #[arg(long, value_name = "SHARE", conflicts_with = "spp", value_parser = share)]
@@ -122,22 +129,23 @@ pub struct Render {
         long,
         value_name = "image|block",
         requires = "target_error",
-        default_value = "image"
+        default_value = "image",
+        value_parser = ["image", "block"]
     )]
-    pub target: GoalTarget,
+    pub target: String,
     /// Render this part of the picture only: pixels from X0,Y0 up to but not including X1,Y1.
-    #[arg(long, value_name = "X0,Y0,X1,Y1")]
-    pub crop: Option<Crop>,
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = crop)]
+    pub crop: Option<Window>,
     /// Threads to work with; by default one for each of the machine's.
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
     /// Further layers of the picture, separated by commas: depth, normal, object, material,
     /// spectral[:from-to:step] (wavelengths in nm).
-    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = layer)]
     pub layers: Vec<Layer>,
     /// Leave out of the loop what the scene does not need, or keep everything.
-    #[arg(long, value_enum, default_value_t)]
-    pub plan: PlanChoice,
+    #[arg(long, default_value = "auto", value_parser = ["auto", "full"])]
+    pub plan: String,
     /// Instruction set; the picture's bits are the same with each.
     #[arg(long, default_value = "auto", value_parser = instructions())]
     pub instructions: Instructions,
@@ -146,32 +154,15 @@ pub struct Render {
     pub quiet: bool,
 }
 
-impl Render {
-    /// What is laid over the scene file for this panel.
-    pub fn overrides(&self, panel: Option<&str>) -> Overrides {
-        self.scene.overrides(panel, &self.image.keys())
-    }
-
-    /// Whether the samples a pixel are said here, not only in the scene file.
-    pub fn sets_spp(&self) -> bool {
-        self.image.spp.is_some() || self.scene.set.iter().any(|(key, _)| key == "image.spp")
-    }
-
-    /// Whether each panel is to be rendered.
-    pub fn panel_is_all(&self) -> bool {
-        self.panel == Some(Panels::All)
-    }
-}
-
-/// Options that stand for keys of the scene's `[image]` table.
+/// Options that stand for keys of `[image]`.
 #[derive(Debug, Args)]
 pub struct ImageOptions {
     /// Camera paths per pixel.
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub spp: Option<String>,
     /// Width and height of the picture in pixels.
-    #[arg(long, value_name = "WxH")]
-    pub size: Option<Size>,
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<String>,
     /// Longest path in segments: 1 is emitted light only, 2 direct light.
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub max_depth: Option<String>,
@@ -187,53 +178,36 @@ pub struct ImageOptions {
     /// Wavelengths per path.
     #[arg(long, value_name = "4|8", allow_negative_numbers = true)]
     pub wavelengths: Option<String>,
-    /// Seed of all randomness.
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    pub seed: Option<String>,
 }
 
 impl ImageOptions {
     /// Keys of `[image]` and the values asked for.
-    fn keys(&self) -> [(&'static str, Option<String>); 8] {
+    pub fn keys(&self) -> [(&'static str, &Option<String>); 7] {
         [
-            ("spp", self.spp.clone()),
-            ("size", self.size.as_ref().map(ToString::to_string)),
-            ("max_depth", self.max_depth.clone()),
-            ("sampler", self.sampler.clone()),
-            ("replicates", self.replicates.clone()),
-            ("precision", self.precision.clone()),
-            ("wavelengths", self.wavelengths.clone()),
-            ("seed", self.seed.clone()),
+            ("spp", &self.spp),
+            ("size", &self.size),
+            ("max_depth", &self.max_depth),
+            ("sampler", &self.sampler),
+            ("replicates", &self.replicates),
+            ("precision", &self.precision),
+            ("wavelengths", &self.wavelengths),
         ]
     }
 }
 
-/// Arguments of `etalon info`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   etalon info scenes/spheres.toml
   etalon info scenes/spheres.toml --panel a --set image.precision=f32")]
 pub struct Info {
-    /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// The panel (named variant) to look at.
-    #[arg(long, value_name = "NAME")]
-    pub panel: Option<String>,
     /// Leave out of the loop what the scene does not need, or keep everything.
-    #[arg(long, value_enum, default_value_t)]
-    pub plan: PlanChoice,
+    #[arg(long, default_value = "auto", value_parser = ["auto", "full"])]
+    pub plan: String,
 }
 
-impl Info {
-    /// What is laid over the scene file.
-    pub fn overrides(&self) -> Overrides {
-        self.scene.overrides(self.panel.as_deref(), &[])
-    }
-}
-
-/// Arguments of `etalon trace`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 The rays are CSV with a heading that names the columns ox,oy,oz,dx,dy,dz (origin and direction, \
@@ -250,59 +224,31 @@ objects at the same t, opaque ones come before glass, then those earlier in the 
 Example:
   printf 'ox,oy,oz,dx,dy,dz\\n0,0,5,0,0,-1\\n' | etalon trace scenes/spheres.toml --rays -")]
 pub struct Trace {
-    /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
     /// The CSV file of rays, or - for stdin.
     #[arg(long, value_name = "FILE|-")]
     pub rays: PathBuf,
-    /// The panel (named variant) to shoot at.
-    #[arg(long, value_name = "NAME")]
-    pub panel: Option<String>,
     /// Say nothing on stderr but errors.
     #[arg(short, long)]
     pub quiet: bool,
 }
 
-impl Trace {
-    /// What is laid over the scene file.
-    pub fn overrides(&self) -> Overrides {
-        self.scene.overrides(self.panel.as_deref(), &[])
-    }
-}
-
-/// Arguments of `etalon replay`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
   etalon replay scenes/spheres.toml --pixel 120,80 --sample 17")]
 pub struct Replay {
-    /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
     /// The pixel, counted from 0,0 in the upper left corner.
-    #[arg(long, value_name = "X,Y")]
-    pub pixel: Pixel,
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    pub pixel: [u32; 2],
     /// The camera path of this pixel, counted from 0.
     #[arg(long, value_name = "I")]
     pub sample: u32,
-    /// Seed of all randomness.
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    pub seed: Option<String>,
-    /// The panel (named variant) to look at.
-    #[arg(long, value_name = "NAME")]
-    pub panel: Option<String>,
 }
 
-impl Replay {
-    /// What is laid over the scene file.
-    pub fn overrides(&self) -> Overrides {
-        let image = [("seed", self.seed.clone())];
-        self.scene.overrides(self.panel.as_deref(), &image)
-    }
-}
-
-/// Arguments of `etalon compare`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 B is the reference: its mean is what relative errors are relative to. Where both pictures know the \
@@ -334,7 +280,6 @@ pub struct Compare {
     pub heatmap: Option<PathBuf>,
 }
 
-/// Arguments of `etalon study`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Each point of the grid is rendered --replicates times with independent seeds and compared with the \
@@ -351,12 +296,8 @@ Examples:
   etalon study scenes/fig8_lens.toml --over spp=1..1024x4 --over sampler=sobol,stratified
   etalon study scenes/fig7_mirrors.toml --over max_depth=1..64x2 --set image.spp=256")]
 pub struct Study {
-    /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// The panel (named variant) to study.
-    #[arg(long, value_name = "NAME")]
-    pub panel: Option<String>,
     /// Go over the values of this choice; may be given for several.
     #[arg(long, value_name = "KEY=VALUES", value_parser = axis)]
     pub over: Vec<Axis>,
@@ -369,11 +310,8 @@ pub struct Study {
     #[arg(long, value_name = "FILE.exr|TRUTH|auto", default_value = "auto")]
     pub reference: Choice,
     /// Refuse what would take longer than this, the reference included.
-    #[arg(long, value_name = "SECONDS", default_value = "150")]
-    pub budget: Seconds,
-    /// Seed of all randomness.
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    pub seed: Option<String>,
+    #[arg(long, value_name = "SECONDS", default_value = "150", value_parser = seconds)]
+    pub budget: Duration,
     /// The directory to write to; by default the scene's name, with the panel's, ending in -study.
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
@@ -388,7 +326,6 @@ pub struct Study {
     pub quiet: bool,
 }
 
-/// Arguments of `etalon chart`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 The columns are explained in scenes/README.md; other programs can write them.
@@ -407,7 +344,6 @@ pub struct Chart {
     pub at: f64,
 }
 
-/// Arguments of `etalon coverage`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Each scene is surveyed by independent samples, 16 times as many as are tested, and then rendered \

@@ -1,25 +1,21 @@
 //! `etalon chart`: several studies in one picture of speed and accuracy.
 
+use std::fmt::Display;
+
 use etalon::inside::chart::{Key, curves, figures, row};
 
 use super::args;
-use super::error::CommandError;
-use super::render::say;
 use super::study::write_chart;
-use super::{Answer, tell};
+use super::{Answer, Failure, say, tell};
 
-/// Draws the chart.
-pub fn run(arguments: &args::Chart) -> Result<Answer, CommandError> {
+pub fn run(arguments: &args::Chart) -> Result<Answer, Failure> {
     let mut rows = Vec::new();
     for path in &arguments.tables {
-        let unreadable = |reason: String| CommandError::Table {
-            path: path.clone(),
-            reason,
-        };
-        let text = std::fs::read_to_string(path).map_err(|e| unreadable(e.to_string()))?;
-        let own = row::read(&text).map_err(|e| unreadable(e.to_string()))?;
+        let unreadable = |reason: &dyn Display| format!("cannot read {}: {reason}", path.display());
+        let text = std::fs::read_to_string(path).map_err(|reason| unreadable(&reason))?;
+        let own = row::read(&text).map_err(|reason| unreadable(&reason))?;
         if own.is_empty() {
-            return Err(unreadable(row::TableError::Empty.to_string()));
+            return Err(unreadable(&row::TableError::Empty).into());
         }
         rows.extend(own);
     }
@@ -32,10 +28,7 @@ pub fn run(arguments: &args::Chart) -> Result<Answer, CommandError> {
     }
     let curves = curves(&rows, Key::Spp);
     let figure = figures::error_over_seconds(&curves, arguments.at);
-    let svg = figure
-        .svg()
-        .map_err(|e| CommandError::Study(e.to_string()))?;
-    let path = write_chart(&arguments.output, &svg)?;
+    let path = write_chart(&arguments.output, &figure.svg()?)?;
     let mut lines = vec![format!(
         "{}: {} curves of {} renders",
         path.display(),

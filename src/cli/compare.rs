@@ -2,89 +2,82 @@
 
 mod text;
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use etalon::inside::compare::stale::{Freshness, different_scenes, freshness};
 use etalon::inside::compare::write_heatmap;
-use etalon::{Attribute, Comparison, Estimate, Side};
+use etalon::{Attribute, CompareError, Comparison, Side};
 use serde::Serialize;
 
-use super::Answer;
 use super::args::Compare;
-use super::error::CommandError;
+use super::{Answer, Failure, say};
 
-/// All that there is to say.
+/// What is printed, as text or as JSON.
 #[derive(Serialize)]
 struct Report {
     /// The picture.
     a: PathBuf,
-    /// What it is compared with.
-    #[serde(flatten)]
-    with: With,
+    /// The picture that it is compared with, or the number.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    b: Option<PathBuf>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    truth: Option<f64>,
     /// Width and height in pixels.
     size: [usize; 2],
-    /// The metrics and the verdict.
     #[serde(flatten)]
     comparison: Comparison,
     /// The relative difference at the ends of the heat map's scale.
     heatmap_scale: Option<f64>,
-    /// What should be known besides.
     notes: Vec<String>,
 }
 
-/// The other side.
-#[derive(Serialize)]
-#[serde(rename_all = "snake_case")]
-enum With {
-    /// A picture.
-    B(PathBuf),
-    /// A number.
-    Truth(f64),
-}
-
-/// Compares and says so.
-pub fn run(arguments: &Compare) -> Result<Answer, CommandError> {
-    let a = Side::read(&arguments.a)?;
-    let b = arguments.b.as_deref().map(Side::read).transpose()?;
+pub fn run(arguments: &Compare) -> Result<Answer, Failure> {
+    let read = |path: &Path| Side::read(path).map_err(|error| words(&error));
+    let a = read(&arguments.a)?;
+    let b = arguments.b.as_deref().map(read).transpose()?;
     let report = match (&b, arguments.truth) {
         (Some(b), _) => with_picture(arguments, &a, b)?,
         (None, Some(truth)) => with_number(&a, truth),
-        (None, None) => {
-            return Err(CommandError::Arguments(
-                "nothing to compare with".to_owned(),
-            ));
-        }
+        (None, None) => return Err("nothing to compare with".into()),
     };
-    let mut output = std::io::stdout().lock();
-    let said = if arguments.json {
-        let json = serde_json::to_string_pretty(&report);
-        json.map_err(|error| CommandError::Output(error.into()))?
+    if arguments.json {
+        say(&serde_json::to_string_pretty(&report)?)?;
     } else {
-        text::text(&report)
-    };
-    writeln!(output, "{}", said.trim_end())
-        .and_then(|()| output.flush())
-        .map_err(CommandError::Output)?;
+        say(text::text(&report).trim_end())?;
+    }
     match &report.comparison.judgement {
         Some(judgement) if judgement.consistent => Ok(Answer::Good),
         Some(_) => Ok(Answer::No),
-        None => Err(CommandError::NoVerdict(why_not(&a, b.as_ref()))),
+        None => Err(format!("no verdict: {}", why_not(&a, b.as_ref())).into()),
     }
 }
 
-fn with_picture(arguments: &Compare, a: &Side, b: &Side) -> Result<Report, CommandError> {
-    let comparison = Comparison::of_sides(a, b)?;
-    let mut notes = Vec::new();
+/// Why pictures cannot be compared, and what to type.
+fn words(error: &CompareError) -> String {
+    match error {
+        CompareError::NotFinite { .. } => {
+            format!("{error}: render it again, or find out with etalon replay where they come from")
+        }
+        CompareError::Sizes { .. } => format!("{error} (etalon render --size)"),
+        other => other.to_string(),
+    }
+}
+
+fn with_picture(arguments: &Compare, a: &Side, b: &Side) -> Result<Report, Failure> {
+    let comparison = Comparison::of_sides(a, b).map_err(|error| words(&error))?;
     let stale = [a, b].map(stale);
     if let Some(difference) = different_scenes(a, b) {
-        let because: Vec<String> = stale.into_iter().flatten().collect();
-        return Err(CommandError::Scenes(difference, because.join("; ")));
+        let words: Vec<String> = [Some(difference)]
+            .into_iter()
+            .chain(stale)
+            .flatten()
+            .collect();
+        return Err(words.join("; ").into());
     }
     if let (None, Some(words)) = (a.text("sceneHash"), &stale[1]) {
-        return Err(CommandError::Scenes(words.clone(), String::new()));
+        return Err(words.clone().into());
     }
-    notes.extend(stale.into_iter().flatten());
+    let mut notes: Vec<String> = stale.into_iter().flatten().collect();
     notes.extend(only_one(a, b));
     notes.extend(other_lengths(a, b));
     let heatmap_scale = match &arguments.heatmap {
@@ -96,7 +89,8 @@ fn with_picture(arguments: &Compare, a: &Side, b: &Side) -> Result<Report, Comma
     }
     Ok(Report {
         a: a.path.clone(),
-        with: With::B(b.path.clone()),
+        b: Some(b.path.clone()),
+        truth: None,
         size: [a.width, a.height],
         comparison,
         heatmap_scale,
@@ -107,7 +101,8 @@ fn with_picture(arguments: &Compare, a: &Side, b: &Side) -> Result<Report, Comma
 fn with_number(a: &Side, truth: f64) -> Report {
     Report {
         a: a.path.clone(),
-        with: With::Truth(truth),
+        b: None,
+        truth: Some(truth),
         size: [a.width, a.height],
         comparison: Comparison::with_truth(a, truth),
         heatmap_scale: None,
@@ -115,8 +110,8 @@ fn with_number(a: &Side, truth: f64) -> Report {
     }
 }
 
-/// Words about a picture whose scene has changed since. Scene files are looked for from the
-/// current directory and from those that the picture is in.
+/// A note about a picture whose scene has changed since it was rendered. Scene files are looked for
+/// from the current directory and from every directory above the picture.
 fn stale(side: &Side) -> Option<String> {
     let path = side
         .path
@@ -136,7 +131,7 @@ fn stale(side: &Side) -> Option<String> {
     }
 }
 
-/// Words about channels that only one picture has.
+/// Notes about channels that only one picture has.
 fn only_one(a: &Side, b: &Side) -> Vec<String> {
     let missing = |from: &Side, other: &Side| {
         let names: Vec<&str> = from
@@ -154,7 +149,7 @@ fn only_one(a: &Side, b: &Side) -> Vec<String> {
         .collect()
 }
 
-/// Words about paths that may be longer in one picture than in the other.
+/// A note about pictures whose paths may have different lengths.
 fn other_lengths(a: &Side, b: &Side) -> Option<String> {
     let [own, others] = [a, b].map(|side| match side.attribute("maxDepth")? {
         Attribute::Int(depth) => Some(depth.to_string()),
@@ -171,7 +166,6 @@ fn other_lengths(a: &Side, b: &Side) -> Option<String> {
     })
 }
 
-/// Why there is no verdict.
 fn why_not(a: &Side, b: Option<&Side>) -> String {
     let names: Vec<String> = std::iter::once(a)
         .chain(b)
@@ -186,14 +180,4 @@ fn why_not(a: &Side, b: Option<&Side>) -> String {
          attribute replicates, at least 2): etalon render --replicates 8 writes them",
         names.join(" and ")
     )
-}
-
-/// A difference in standard errors, for people.
-fn score(judged: &etalon::inside::compare::ChannelJudgement) -> f64 {
-    Estimate {
-        value: judged.relative_bias,
-        standard_error: judged.standard_error,
-        freedom: judged.freedom,
-    }
-    .score(0.0)
 }

@@ -3,28 +3,22 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use etalon::inside::render::Instructions;
 use etalon::inside::study::choice::stem;
 use etalon::inside::study::coverage::{Count, Coverage, SURVEY, Survey, cover};
 use etalon::inside::study::subject::{Subject, SubjectError};
-use etalon::{Overrides, Scene};
+use etalon::{Instructions, Overrides, Scene};
 
-use super::Answer;
-use super::args;
-use super::error::CommandError;
-use super::render::{say, threads};
-use super::study::write;
+use super::{Answer, Failure, args, say, scene_words, threads, write};
 
-/// How many times as many samples the survey takes as a tested render: what it has not seen
-/// contributes to a tested render with a probability of a sixteenth at most, on average.
+/// Samples of the survey over those of a tested render. What the survey has not seen contributes
+/// to a tested render with a probability of a sixteenth at most, on average.
 const SURVEY_SHARE: u32 = 16;
 /// Shares of blocks between which 95 % intervals are honest.
 const HONEST: [f64; 2] = [0.93, 0.97];
 /// Edge of blocks: pictures are whole blocks where they can be.
 const BLOCK: u32 = etalon::inside::stats::blocks::EDGE as u32;
 
-/// Tests all scenes with all samplers.
-pub fn run(arguments: &args::Coverage) -> Result<Answer, CommandError> {
+pub fn run(arguments: &args::Coverage) -> Result<Answer, Failure> {
     let pool = threads(arguments.threads)?;
     let mut table = String::from("scene,sampler,spp,enough,enough_held,few,few_held\n");
     let mut total = Coverage::default();
@@ -48,24 +42,25 @@ pub fn run(arguments: &args::Coverage) -> Result<Answer, CommandError> {
     }
     say(&line("all", "all", total))?;
     if let Some(path) = &arguments.output {
-        write(path, table.as_bytes())?;
+        write(path, &table)?;
     }
     let share = total.enough.share();
     let honest = share.is_nan() || (HONEST[0]..=HONEST[1]).contains(&share);
     Ok(if honest { Answer::Good } else { Answer::No })
 }
 
-/// One scene with each sampler.
-fn test(arguments: &args::Coverage, path: &Path) -> Result<Vec<(String, Coverage)>, CommandError> {
+/// Tests one scene with each sampler.
+fn test(arguments: &args::Coverage, path: &Path) -> Result<Vec<(String, Coverage)>, Failure> {
     let failed = |error| match error {
-        SubjectError::Scene(error) => CommandError::Scene(error),
-        other => CommandError::Study(other.to_string()),
+        SubjectError::Scene(error) => scene_words(&error),
+        other => other.to_string(),
     };
     let mut overrides = Overrides {
         set: arguments.set.clone(),
         ..Overrides::default()
     };
-    let [width, height] = Scene::load_with(path, &overrides)?.image.size;
+    let scene = Scene::load_with(path, &overrides).map_err(|error| scene_words(&error))?;
+    let [width, height] = scene.image.size;
     let scale = f64::from(arguments.edge) / f64::from(width.max(height));
     let pixels = |n: u32| {
         let scaled = f64::from(n) * scale / f64::from(BLOCK);

@@ -1,33 +1,28 @@
 //! `etalon replay`: one camera path, step by step.
 
-use std::io::Write;
-
 use etalon::inside::integrate::chunk::Request;
 use etalon::inside::integrate::replay::{LightVertex, Replayed, Vertex};
-use etalon::inside::render::{Instructions, replay};
-use etalon::{Plan, Scene};
+use etalon::inside::render::replay;
+use etalon::{Instructions, Plan, Scene};
 use glam::DVec3;
 
-use super::Answer;
 use super::args::Replay;
-use super::error::CommandError;
+use super::{Answer, Failure, say};
 
-/// Follows the path asked for.
-pub fn run(arguments: &Replay) -> Result<Answer, CommandError> {
-    let scene = Scene::load_with(&arguments.scene.scene, &arguments.overrides())?;
-    let [x, y] = arguments.pixel.0;
+pub fn run(arguments: &Replay) -> Result<Answer, Failure> {
+    let scene = arguments.scene.load()?;
+    let [x, y] = arguments.pixel;
     let [width, height] = scene.image.size;
     if x >= width || y >= height {
-        return Err(CommandError::Arguments(format!(
-            "pixel {x},{y} is outside of the {width}x{height} picture"
-        )));
+        return Err(format!("pixel {x},{y} is outside of the {width}x{height} picture").into());
     }
     if arguments.sample >= scene.image.spp {
-        return Err(CommandError::Arguments(format!(
+        return Err(format!(
             "sample {} is not below the scene's {} samples a pixel: say --set image.spp=N as the \
              render did",
             arguments.sample, scene.image.spp
-        )));
+        )
+        .into());
     }
     let plan = Plan::new(&scene, false)?;
     let request = Request {
@@ -36,10 +31,7 @@ pub fn run(arguments: &Replay) -> Result<Answer, CommandError> {
         sample: arguments.sample,
     };
     let path = replay(&plan, Instructions::best(), request);
-    let text = describe(&scene, request, &path);
-    std::io::stdout()
-        .write_all(text.as_bytes())
-        .map_err(CommandError::Output)?;
+    say(&describe(&scene, request, &path))?;
     Ok(Answer::Good)
 }
 
@@ -55,15 +47,12 @@ fn describe(scene: &Scene, request: Request, path: &Replayed) -> String {
     for (i, vertex) in path.vertices.iter().enumerate() {
         lines.push(String::new());
         lines.push(format!("vertex {}", i + 1));
-        lines.extend(
-            rows(scene, vertex)
-                .into_iter()
-                .map(|(name, value)| format!("  {name:<18}{value}")),
-        );
+        let rows = rows(scene, vertex).into_iter();
+        lines.extend(rows.map(|(name, value)| format!("  {name:<18}{value}")));
     }
     lines.push(String::new());
     lines.push(format!("X Y Z             {}", numbers(&path.tristimulus)));
-    lines.join("\n") + "\n"
+    lines.join("\n")
 }
 
 fn rows(scene: &Scene, vertex: &Vertex) -> Vec<(&'static str, String)> {

@@ -1,7 +1,5 @@
 //! `etalon study`: error over samples and seconds, for a grid of choices.
 
-mod watch;
-
 use std::path::{Path, PathBuf};
 
 use etalon::inside::chart::{self, Curve, Figure, Key, curves, figures};
@@ -13,36 +11,27 @@ use etalon::inside::study::run::{Request, Study, run as run_study};
 use etalon::inside::study::subject::{Subject, SubjectError};
 use etalon::inside::study::{StudyError, choice, report};
 
-use super::args;
-use super::error::{CommandError, scene_words};
-use super::render::{progress, say, threads};
-use super::{Answer, tell};
-use watch::Shown;
+use super::progress::{Studying, listen};
+use super::{Answer, Failure, args, quoted, say, scene_words, tell, threads, write};
 
-/// Carries out a study, or goes on with one, and draws what there is.
-pub fn run(arguments: &args::Study) -> Result<Answer, CommandError> {
-    let request = request(arguments)?;
+/// Carries out a study, or goes on with one, and draws its charts.
+pub fn run(arguments: &args::Study) -> Result<Answer, Failure> {
     let threads = threads(arguments.threads)?;
-    progress::listen();
-    let request = Request {
-        threads: threads.current_num_threads() as u32,
-        ..request
-    };
-    let mut shown = Shown::new(arguments.quiet);
-    let study = threads.install(|| run_study(&request, &mut shown));
-    shown.finish();
-    let study = study.map_err(|error| said(&error))?;
+    listen();
+    let request = request(arguments, threads.current_num_threads() as u32);
+    let study = threads.install(|| run_study(&request, &mut Studying::new(arguments.quiet)));
+    let study = study.map_err(|error| words(&error))?;
     publish(&request, &study)?;
-    say(&said_of(&request, &study))?;
+    say(&summary(&request, &study))?;
     if !study.complete && !arguments.quiet {
         tell("note: interrupted; the same command goes on where this one stopped");
     }
     Ok(Answer::Good)
 }
 
-/// What a study complains of, and what to type instead.
-fn said(error: &StudyError) -> CommandError {
-    CommandError::Study(match error {
+/// Why a study failed, and what to type instead.
+fn words(error: &StudyError) -> String {
+    match error {
         StudyError::OneReplicate => format!("--replicates: {error}"),
         StudyError::Other { .. } => {
             format!("{error}; choose another directory with -o, or remove that one")
@@ -81,44 +70,36 @@ fn said(error: &StudyError) -> CommandError {
             )
         }
         other => other.to_string(),
-    })
+    }
 }
 
-fn request(arguments: &args::Study) -> Result<Request, CommandError> {
+fn request(arguments: &args::Study, threads: u32) -> Request {
     let scene = &arguments.scene;
-    let mut overrides = scene.overrides(arguments.panel.as_deref(), &[]);
-    if let Some(seed) = &arguments.seed {
-        overrides.set.push(("image.seed".to_owned(), seed.clone()));
-    }
     let directory = arguments.output.clone().unwrap_or_else(|| {
         let name = choice::stem(&scene.scene);
-        let panel = arguments.panel.iter().map(|panel| format!("-{panel}"));
+        let panel = scene.panel.iter().map(|panel| format!("-{panel}"));
         PathBuf::from(format!("{name}{}-study", panel.collect::<String>()))
     });
-    Ok(Request {
+    let words = std::env::args_os().skip(1);
+    let words = words.map(|word| quoted(&word.to_string_lossy()));
+    Request {
         subject: Subject {
             path: scene.scene.clone(),
-            overrides,
+            overrides: scene.overrides(&[]),
             instructions: arguments.instructions,
         },
         axes: arguments.over.clone(),
         replicates: arguments.replicates,
         reference: arguments.reference.clone(),
-        budget: arguments.budget.0.as_secs_f64(),
-        threads: 0,
+        budget: arguments.budget.as_secs_f64(),
+        threads,
         directory,
-        command: command_line(),
-    })
-}
-
-/// The command as it could be typed again.
-fn command_line() -> String {
-    let words = std::env::args().skip(1).map(|word| super::quoted(&word));
-    format!("etalon {}", words.collect::<Vec<_>>().join(" "))
+        command: format!("etalon {}", words.collect::<Vec<_>>().join(" ")),
+    }
 }
 
 /// Draws the charts and writes the report.
-fn publish(request: &Request, study: &Study) -> Result<(), CommandError> {
+fn publish(request: &Request, study: &Study) -> Result<(), Failure> {
     let abscissa = study.grid.abscissa.key;
     let curves = curves(&study.rows, abscissa);
     if curves.is_empty() {
@@ -141,34 +122,22 @@ fn publish(request: &Request, study: &Study) -> Result<(), CommandError> {
         }
     }
     let page = report::html(request, study, &curves, &drawn);
-    write(&request.directory.join("report.html"), page.as_bytes())
+    write(&request.directory.join("report.html"), &page)
 }
 
 /// Writes a chart as NAME.svg and returns that path; NAME may have the ending already, any other dot
 /// belongs to the name.
-pub fn write_chart(base: &Path, svg: &str) -> Result<PathBuf, CommandError> {
+pub fn write_chart(base: &Path, svg: &str) -> Result<PathBuf, Failure> {
     let mut path = base.to_owned();
     if base.extension().is_none_or(|ending| ending != "svg") {
         path.as_mut_os_string().push(".svg");
     }
-    write(&path, svg.as_bytes())?;
+    write(&path, svg)?;
     Ok(path)
 }
 
-/// Writes a file, whole or not at all.
-pub fn write(path: &Path, content: &[u8]) -> Result<(), CommandError> {
-    use std::io::Write as _;
-    Ok(etalon::inside::film::whole::write(path, |file| {
-        file.write_all(content)
-            .map_err(|source| etalon::inside::film::Error::Write {
-                path: path.to_owned(),
-                source,
-            })
-    })?)
-}
-
-/// What was found, for people.
-fn said_of(request: &Request, study: &Study) -> String {
+/// The result in lines: each curve, the reference, the report's place.
+fn summary(request: &Request, study: &Study) -> String {
     let abscissa = study.grid.abscissa.key;
     let curves = curves(&study.rows, abscissa);
     let mut lines: Vec<String> = curves.iter().map(|curve| line(curve, abscissa)).collect();
@@ -187,7 +156,7 @@ fn said_of(request: &Request, study: &Study) -> String {
     lines.join("\n")
 }
 
-/// How well the reference is known beside the best point.
+/// How well the reference is known, compared with the best point.
 fn known(study: &Study, curves: &[Curve]) -> String {
     let own = study.reference.rmse();
     if own == 0.0 {

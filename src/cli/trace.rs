@@ -6,16 +6,13 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use etalon::inside::render::trace::Decided;
-use etalon::{First, FirstHit, Found, Scene, Tier, Tracer};
+use etalon::inside::shape::implicit::certified::Workspace;
+use etalon::{First, FirstHit, Tier, Tracer};
 use rayon::prelude::*;
 
 use super::args::Trace;
-use super::error::CommandError;
-use super::{Answer, tell};
-pub use rays::RayError;
+use super::{Answer, Failure, tell};
 use rays::{Line, Lines, Table};
-
-use etalon::inside::shape::implicit::certified::Workspace;
 
 const HEADING: &str = "id,hit,t,x,y,z,nx,ny,nz,object,\
      finder,enclosure_low,enclosure_high,multiplicity,tier\n";
@@ -25,41 +22,31 @@ const PIECE: usize = 1 << 10;
 /// Pieces read before they are worked on, enough for the threads of a large machine.
 const PIECES: usize = 256;
 
-/// Prints the first hit of each ray.
-pub fn run(arguments: &Trace) -> Result<Answer, CommandError> {
-    let scene = Scene::load_with(&arguments.scene.scene, &arguments.overrides())?;
-    let tracer = Tracer::new(&scene)?;
+pub fn run(arguments: &Trace) -> Result<Answer, Failure> {
+    let tracer = Tracer::new(&arguments.scene.load()?)?;
     let mut lines = Lines::open(&arguments.rays)?;
     let table = lines.heading()?;
     if !arguments.quiet && !table.ignored.is_empty() {
-        tell(&format!(
-            "note: ignored columns: {}",
-            table.ignored.join(", ")
-        ));
+        let names = table.ignored.join(", ");
+        tell(&format!("note: ignored columns: {names}"));
     }
     let mut decided = Decided::default();
     let mut output = io::stdout().lock();
-    output
-        .write_all(HEADING.as_bytes())
-        .map_err(CommandError::Output)?;
+    output.write_all(HEADING.as_bytes())?;
     loop {
         let (batch, end) = read_batch(&mut lines);
-        let pieces: Vec<Piece> = batch
-            .par_chunks(PIECE)
-            .map(|lines| trace(&tracer, &table, lines))
-            .collect();
-        for piece in pieces {
-            output
-                .write_all(piece.text.as_bytes())
-                .map_err(CommandError::Output)?;
-            decided = decided.joined(piece.decided);
-            piece.end?;
+        let pieces = batch.par_chunks(PIECE);
+        let pieces = pieces.map(|lines| trace(&tracer, &table, lines));
+        for (text, own, traced) in pieces.collect::<Vec<_>>() {
+            output.write_all(text.as_bytes())?;
+            decided = decided.joined(own);
+            traced?;
         }
         if end? {
             break;
         }
     }
-    output.flush().map_err(CommandError::Output)?;
+    output.flush()?;
     if !arguments.quiet {
         tell(&summary(&decided));
     }
@@ -67,7 +54,7 @@ pub fn run(arguments: &Trace) -> Result<Answer, CommandError> {
 }
 
 /// The next lines, and whether they are the last ones; those before an unreadable one count.
-fn read_batch(lines: &mut Lines) -> (Vec<Line>, Result<bool, RayError>) {
+fn read_batch(lines: &mut Lines) -> (Vec<Line>, Result<bool, Failure>) {
     let mut batch = Vec::with_capacity(PIECE);
     while batch.len() < PIECE * PIECES {
         match lines.next_line() {
@@ -79,84 +66,54 @@ fn read_batch(lines: &mut Lines) -> (Vec<Line>, Result<bool, RayError>) {
     (batch, Ok(false))
 }
 
-/// Some rows of the output.
-struct Piece {
-    text: String,
-    decided: Decided,
-    /// The first line that is no ray ends the table.
-    end: Result<(), RayError>,
-}
-
-fn trace(tracer: &Tracer, table: &Table, lines: &[Line]) -> Piece {
-    let mut piece = Piece {
-        text: String::new(),
-        decided: Decided::default(),
-        end: Ok(()),
-    };
+/// Some rows of the output, up to the first line that is no ray, which ends the table.
+fn trace(tracer: &Tracer, table: &Table, lines: &[Line]) -> (String, Decided, Result<(), Failure>) {
+    let (mut text, mut decided) = (String::new(), Decided::default());
     let mut workspace = Workspace::default();
     for line in lines {
-        let row = match table.ray(line) {
-            Ok(row) => row,
-            Err(error) => {
-                piece.end = Err(error);
-                break;
-            }
+        let (id, query) = match table.ray(line) {
+            Ok(ray) => ray,
+            Err(error) => return (text, decided, Err(error)),
         };
-        let first = tracer.first_hit(&row.query, &mut workspace, &mut piece.decided);
-        push_field(&mut piece.text, &row.id);
+        let first = tracer.first_hit(&query, &mut workspace, &mut decided);
+        push_field(&mut text, &id);
         match first {
-            First::Hit(hit) => push_hit(&mut piece.text, tracer, &hit),
-            First::Nothing => piece.text.push_str(",0,,,,,,,,,,,,,\n"),
+            First::Hit(hit) => push_hit(&mut text, tracer, &hit),
+            First::Nothing => text.push_str(",0,,,,,,,,,,,,,\n"),
             First::Undecided(finder) => {
-                let _ = writeln!(piece.text, ",undecided,,,,,,,,,{finder},,,,");
+                let _ = writeln!(text, ",undecided,,,,,,,,,{finder},,,,");
             }
         }
     }
-    piece
+    (text, decided, Ok(()))
 }
 
+/// Appends what follows the id of a ray that hits, numbers with the shortest digits that give back the
+/// same f64.
 fn push_hit(text: &mut String, tracer: &Tracer, hit: &FirstHit) {
-    text.push_str(",1");
-    push_numbers(text, &[hit.t]);
-    push_numbers(text, &hit.point.to_array());
-    match hit.normal {
-        Some(normal) => push_numbers(text, &normal.to_array()),
-        None => text.push_str(",,,"),
-    }
-    text.push(',');
+    let [x, y, z] = hit.point.to_array();
+    // Writing to a string cannot fail.
+    let _ = write!(text, ",1,{:?},{x:?},{y:?},{z:?},", hit.t);
+    let _ = match hit.normal.map(|normal| normal.to_array()) {
+        Some([x, y, z]) => write!(text, "{x:?},{y:?},{z:?},"),
+        None => write!(text, ",,,"),
+    };
     push_field(text, tracer.name(hit.object));
-    match &hit.found {
-        Some(found) => push_found(text, found),
-        None => text.push_str(",,,,,"),
-    }
-    text.push('\n');
-}
-
-/// Finder, enclosure, multiplicity and tier.
-fn push_found(text: &mut String, found: &Found) {
-    text.push(',');
-    text.push_str(found.finder);
-    push_numbers(text, &found.enclosure);
-    text.push(',');
+    let Some(found) = &hit.found else {
+        text.push_str(",,,,,\n");
+        return;
+    };
+    let [low, high] = found.enclosure;
+    let _ = write!(text, ",{},{low:?},{high:?},", found.finder);
     if let Some(multiplicity) = found.multiplicity {
-        // Writing to a string cannot fail.
         let _ = write!(text, "{multiplicity}");
     }
-    text.push(',');
     text.push_str(match found.tier {
-        Some(Tier::Double) => "f64",
-        Some(Tier::DoubleDouble) => "double-double",
-        Some(Tier::Exact) => "exact",
-        None => "uncertified",
+        Some(Tier::Double) => ",f64\n",
+        Some(Tier::DoubleDouble) => ",double-double\n",
+        Some(Tier::Exact) => ",exact\n",
+        None => ",uncertified\n",
     });
-}
-
-/// The shortest digits that give back the same f64.
-fn push_numbers(text: &mut String, numbers: &[f64]) {
-    for number in numbers {
-        // Writing to a string cannot fail.
-        let _ = write!(text, ",{number:?}");
-    }
 }
 
 /// A field, in quotes where it has to be (RFC 4180).
@@ -168,7 +125,7 @@ fn push_field(text: &mut String, field: &str) {
     }
 }
 
-/// Who has decided what, for stderr.
+/// How many rays and questions each arithmetic has decided, for stderr.
 fn summary(decided: &Decided) -> String {
     let Decided {
         rays,

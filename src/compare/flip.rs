@@ -15,7 +15,7 @@ mod filters;
 use rayon::prelude::*;
 
 use exposures::{exposures, tone_mapped};
-use filters::{Filters, Plane};
+use filters::Filters;
 
 /// Pixels per degree of visual angle: distance · pixels/width · π/180.
 const PIXELS_PER_DEGREE: f64 = 0.7 * 3840.0 / 0.7 * std::f64::consts::PI / 180.0;
@@ -35,7 +35,6 @@ const TO_XYZ: [[f64; 3]; 3] = [
 
 /// HDR-ꟻLIP of each pixel of a test picture against a reference, both linear sRGB of
 /// `width` pixels a row.
-#[must_use]
 pub fn flip(reference: &[[f64; 3]], test: &[[f64; 3]], width: usize) -> Vec<f64> {
     let filters = Filters::new(PIXELS_PER_DEGREE);
     let maps: Vec<Vec<f64>> = exposures(reference)
@@ -47,10 +46,7 @@ pub fn flip(reference: &[[f64; 3]], test: &[[f64; 3]], width: usize) -> Vec<f64>
             low_dynamic_range(&filters, &shown(reference), &shown(test), width)
         })
         .collect();
-    let worst = |pixel: usize| {
-        maps.iter()
-            .fold(0.0, |worst: f64, map| worst.max(map[pixel]))
-    };
+    let worst = |pixel: usize| maps.iter().map(|map| map[pixel]).fold(0.0, f64::max);
     (0..reference.len()).map(worst).collect()
 }
 
@@ -63,12 +59,9 @@ fn low_dynamic_range(
 ) -> Vec<f64> {
     let [r, t] = [reference, test].map(|picture| Seen::new(filters, picture, width));
     let largest = largest_colour_difference();
-    let pixels = r
-        .colour
-        .iter()
-        .zip(&t.colour)
-        .zip(r.features.iter().zip(&t.features));
-    pixels
+    let colours = r.colour.iter().zip(&t.colour);
+    colours
+        .zip(r.features.iter().zip(&t.features))
         .map(|((a, b), (own, others))| {
             let colour = redistributed(libm::pow(hyab(*a, *b), COLOUR_EXPONENT), largest);
             let [edges, points] = [0, 1].map(|i| (own[i] - others[i]).abs());
@@ -90,38 +83,37 @@ struct Seen {
 impl Seen {
     fn new(filters: &Filters, picture: &[[f64; 3]], width: usize) -> Self {
         let opponent: Vec<[f64; 3]> = picture.iter().map(|rgb| opponent(*rgb)).collect();
-        let plane = |i: usize| Plane {
-            values: opponent.iter().map(|c| c[i]).collect(),
-            width,
-        };
-        let [y, x, z] = [0, 1, 2].map(|i| filters.contrast(&plane(i), i));
-        let colour = y.values.iter().zip(&x.values).zip(&z.values);
+        let [mut grey, x, z] =
+            [0, 1, 2].map(|i| opponent.iter().map(|c| c[i]).collect::<Vec<f64>>());
+        let seen = |values: &[f64], channel| filters.contrast(values, width, channel);
+        let colour = seen(&grey, 0).into_iter().zip(seen(&x, 1)).zip(seen(&z, 2));
         let colour = colour
-            .map(|((y, x), z)| hunt(lab(from_opponent([*y, *x, *z]))))
+            .map(|((y, x), z)| hunt(lab(from_opponent([y, x, z]))))
             .collect();
-        let mut grey = plane(0);
-        for value in &mut grey.values {
+        for value in &mut grey {
             *value = (*value + 16.0) / 116.0;
         }
         Self {
             colour,
-            features: filters.features(&grey),
+            features: filters.features(&grey, width),
         }
     }
 }
 
-fn xyz(rgb: [f64; 3]) -> [f64; 3] {
-    TO_XYZ.map(|row| row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2])
+/// XYZ of linear sRGB over those of white.
+fn relative_xyz(rgb: [f64; 3]) -> [f64; 3] {
+    let [x, y, z] = TO_XYZ.map(|row| row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2]);
+    [x / WHITE[0], y / WHITE[1], z / WHITE[2]]
+}
+
+/// The lightness, red–green and blue–yellow of X, Y, Z, which L*a*b* takes after their cube root.
+fn opposed([x, y, z]: [f64; 3]) -> [f64; 3] {
+    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
 /// Linear sRGB to Y, Cx, Cz: linear in XYZ, achromatic, red–green and blue–yellow.
 fn opponent(rgb: [f64; 3]) -> [f64; 3] {
-    let [x, y, z] = relative(xyz(rgb));
-    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
-}
-
-fn relative(xyz: [f64; 3]) -> [f64; 3] {
-    [xyz[0] / WHITE[0], xyz[1] / WHITE[1], xyz[2] / WHITE[2]]
+    opposed(relative_xyz(rgb))
 }
 
 /// Back to linear sRGB, clamped to what a display shows.
@@ -149,8 +141,7 @@ fn lab(rgb: [f64; 3]) -> [f64; 3] {
             t / (3.0 * DELTA * DELTA) + 4.0 / 29.0
         }
     };
-    let [x, y, z] = relative(xyz(rgb)).map(f);
-    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+    opposed(relative_xyz(rgb).map(f))
 }
 
 /// Colours look less colourful where it is dark.

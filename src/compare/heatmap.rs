@@ -33,7 +33,7 @@ pub fn write_heatmap(path: &Path, a: &Side, b: &Side) -> Result<Option<f64>, Err
     let rank = ((1.0 - BEYOND) * (sizes.len() - 1) as f64) as usize;
     let scale = sizes[rank].max(f64::MIN_POSITIVE);
     let colours: Vec<[u8; 3]> = relative.iter().map(|d| colour(d / scale)).collect();
-    png::write_bytes(path, a.width, a.height, colours.as_flattened())?;
+    png::write_colours(path, a.width, a.height, &colours)?;
     Ok(Some(scale))
 }
 

@@ -6,19 +6,20 @@ use crate::stats::metrics::{
     Metric, mean, mean_error, mean_over_channels, relative_mean_error, relmse, rmse, smape,
 };
 
-/// All metrics of a channel, or of several.
+/// The metrics of a channel, or their means over several.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Metrics {
     /// Signed mean error, in the unit of the channel.
     pub mean_error: Metric,
-    /// The same over the reference's mean.
+    /// Mean error over the reference's mean.
     pub relative_mean_error: Metric,
     /// Root of the mean squared error.
     pub rmse: Metric,
     /// Relative mean squared error.
     pub relmse: Metric,
-    /// The same without the share of the reference's own variance, where that is known.
+    /// Relative mean squared error without the share of the reference's own variance, where that is
+    /// known.
     pub relmse_without_reference_variance: Option<Metric>,
     /// Symmetric mean absolute percentage error, as a fraction.
     pub smape: Metric,
@@ -28,11 +29,11 @@ pub struct Metrics {
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ChannelMetrics {
-    /// Its name.
+    /// Name of the channel.
     pub channel: String,
-    /// Means of both pictures.
+    /// Means of the picture and of the reference.
     pub means: [f64; 2],
-    /// The metrics.
+    /// The picture's errors against the reference.
     pub metrics: Metrics,
 }
 
@@ -43,25 +44,21 @@ pub struct ChannelMetrics {
 /// [`CompareError`] for sides of different sizes or without a common channel.
 pub fn metrics(a: &Side, b: &Side) -> Result<(Vec<ChannelMetrics>, Option<Metrics>), CompareError> {
     let paths = || [a.path.clone(), b.path.clone()];
-    if [a.width, a.height] != [b.width, b.height] {
-        return Err(CompareError::Sizes {
-            paths: paths(),
-            sizes: [[a.width, a.height], [b.width, b.height]],
-        });
+    let sizes = [a, b].map(|side| [side.width, side.height]);
+    if sizes[0] != sizes[1] {
+        return Err(CompareError::Sizes(paths(), sizes));
     }
     let channels: Vec<ChannelMetrics> = shared(a, b).map(|(a, b)| of_channel(a, b)).collect();
     if channels.is_empty() {
-        return Err(CompareError::NothingShared {
-            paths: paths(),
-            names: [a, b].map(list),
-        });
+        let list = |side: &Side| {
+            let names: Vec<&str> = side.channels.iter().map(|c| c.name.as_str()).collect();
+            names.join(", ")
+        };
+        return Err(CompareError::NothingShared(paths(), [a, b].map(list)));
     }
-    let of_colour = |c: &&ChannelMetrics| names::RGB.contains(&c.channel.as_str());
-    let colours: Vec<Metrics> = channels
-        .iter()
-        .filter(of_colour)
-        .map(|c| c.metrics)
-        .collect();
+    let colours = channels.iter();
+    let colours = colours.filter(|c| names::RGB.contains(&c.channel.as_str()));
+    let colours: Vec<Metrics> = colours.map(|c| c.metrics).collect();
     let together = (colours.len() == names::RGB.len()).then(|| joined(&colours));
     Ok((channels, together))
 }
@@ -70,11 +67,6 @@ pub fn metrics(a: &Side, b: &Side) -> Result<(Vec<ChannelMetrics>, Option<Metric
 pub fn shared<'a>(a: &'a Side, b: &'a Side) -> impl Iterator<Item = (&'a Channel, &'a Channel)> {
     let both = |channel: &'a Channel| Some((channel, b.channel(&channel.name)?));
     a.channels.iter().filter_map(both)
-}
-
-fn list(side: &Side) -> String {
-    let names: Vec<&str> = side.channels.iter().map(|c| c.name.as_str()).collect();
-    names.join(", ")
 }
 
 fn of_channel(a: &Channel, b: &Channel) -> ChannelMetrics {

@@ -1,4 +1,4 @@
-//! What is known of one picture.
+//! One picture of a comparison.
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ pub struct Side {
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// R, G, B and spectral bands, as far as they are there.
+    /// R, G, B and spectral bands, as far as the picture has them.
     pub channels: Vec<Channel>,
     /// Degrees of freedom of each variance; `None` where no variances are known.
     pub freedom: Option<f64>,
@@ -27,7 +27,7 @@ pub struct Side {
 /// A channel with the variances of its values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
-    /// Its name in the file.
+    /// Name in the file.
     pub name: String,
     /// Values, row by row.
     pub values: Vec<f64>,
@@ -45,23 +45,22 @@ impl Side {
         Self::of_picture(path, exr::read(path)?)
     }
 
-    /// Of a picture already read from `path`.
+    /// Takes a picture already read from `path`.
     ///
     /// # Errors
-    /// As [`Side::read`], but for the reading.
+    /// [`CompareError`] for pictures that hold nothing to compare, or values that are not numbers.
     pub fn of_picture(path: &Path, picture: Picture) -> Result<Self, CompareError> {
-        let is_value = |name: &str| names::RGB.contains(&name) || wavelength(name).is_some();
-        let values = picture.channels.iter().map(|channel| &channel.name);
-        let values: Vec<&String> = values.filter(|name| is_value(name)).collect();
-        if values.is_empty() {
-            return Err(CompareError::Channels {
-                path: path.to_owned(),
-            });
+        let places = picture.channels.iter();
+        let mut places: Vec<(f64, &str)> = places
+            .filter_map(|channel| Some((place(&channel.name)?, channel.name.as_str())))
+            .collect();
+        if places.is_empty() {
+            return Err(CompareError::Channels(path.to_owned()));
         }
-        let mut channels = Vec::new();
-        for name in in_order(values) {
-            channels.push(channel(path, &picture, name)?);
-        }
+        places.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let channels = places.into_iter();
+        let channels = channels.map(|(_, name)| channel(path, &picture, name));
+        let channels = channels.collect::<Result<Vec<_>, _>>()?;
         let freedom = match picture.attribute("replicates") {
             Some(Attribute::Int(count)) if *count > 1 => Some(f64::from(count - 1)),
             _ => None,
@@ -106,16 +105,9 @@ impl Side {
             _ => None,
         }
     }
-
-    /// The mean of a channel over some pixels, or all, where its variances are known.
-    #[must_use]
-    pub fn mean(&self, channel: &Channel, pixels: Option<&[usize]>) -> Option<Estimate> {
-        mean_over(channel, self.freedom?, pixels)
-    }
 }
 
 /// The mean of a channel over some pixels, or all; pixels are independent of each other.
-#[must_use]
 pub fn mean_over(channel: &Channel, freedom: f64, pixels: Option<&[usize]>) -> Option<Estimate> {
     let variances = channel.variances.as_ref()?;
     let Some(pixels) = pixels else {
@@ -126,14 +118,11 @@ pub fn mean_over(channel: &Channel, freedom: f64, pixels: Option<&[usize]>) -> O
     Some(Estimate::mean_of(&values, &variances, freedom))
 }
 
-/// R, G, B, then bands from short to long wavelengths.
-fn in_order(mut names: Vec<&String>) -> Vec<&String> {
-    let place = |name: &&String| {
-        let rgb = names::RGB.iter().position(|other| other == name);
-        rgb.map_or_else(|| wavelength(name).unwrap_or(0.0) + 3.0, |i| i as f64)
-    };
-    names.sort_by(|a, b| place(a).total_cmp(&place(b)));
-    names
+/// The order of channels that are compared: R, G, B, then bands from short to long wavelengths.
+fn place(name: &str) -> Option<f64> {
+    let rgb = names::RGB.iter().position(|other| *other == name);
+    rgb.map(|index| index as f64)
+        .or_else(|| Some(wavelength(name)? + 3.0))
 }
 
 fn channel(path: &Path, picture: &Picture, name: &str) -> Result<Channel, CompareError> {
@@ -156,10 +145,7 @@ fn channel(path: &Path, picture: &Picture, name: &str) -> Result<Channel, Compar
     let variances = variances.filter(|v| !v.iter().all(|v| v.is_nan()));
     let sound = |v: &Vec<f64>| v.iter().all(|&v| v >= 0.0 && v.is_finite());
     if !variances.as_ref().is_none_or(sound) {
-        return Err(CompareError::Variance {
-            path: path.to_owned(),
-            channel: name.to_owned(),
-        });
+        return Err(CompareError::Variance(path.to_owned(), name.to_owned()));
     }
     Ok(Channel {
         name: name.to_owned(),

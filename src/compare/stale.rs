@@ -3,24 +3,23 @@
 use std::path::{Path, PathBuf};
 
 use super::Side;
-use crate::film::provenance::hash;
+use crate::film::hash;
 use crate::scene;
 
-/// What is found where the picture says its scene is.
+/// The state of the scene file that a picture names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Freshness {
-    /// The picture does not say which scene it is of.
+    /// The picture does not name its scene.
     Unknown,
-    /// The scene file is not there (any more), or cannot be read.
+    /// The scene file is not there, or cannot be read.
     Missing(PathBuf),
     /// The scene file is the one that the picture was made from.
     Fresh,
-    /// It has changed since.
+    /// The scene file has changed since the picture was rendered.
     Stale(PathBuf),
 }
 
 /// Looks for the scene file of a picture, relative to `root`.
-#[must_use]
 pub fn freshness(side: &Side, root: &Path) -> Freshness {
     let (Some(file), Some(recorded)) = (side.text("sceneFile"), side.text("sceneHash")) else {
         return Freshness::Unknown;
@@ -33,9 +32,7 @@ pub fn freshness(side: &Side, root: &Path) -> Freshness {
     }
 }
 
-/// Words about two pictures that are not of the same scene, panel or path length; `None` where
-/// nothing that both say differs.
-#[must_use]
+/// How the scenes or panels of two pictures differ; `None` where nothing that both record does.
 pub fn different_scenes(a: &Side, b: &Side) -> Option<String> {
     let differs = |name: &str| match (a.text(name), b.text(name)) {
         (Some(own), Some(others)) => own != others,

@@ -5,7 +5,7 @@
 //! says so. The same picture gives the same bytes, always.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{self, BufReader};
 use std::path::Path;
 
 use ::exr::error::Error as Failure;
@@ -33,26 +33,18 @@ const REC_709: Chromaticities = Chromaticities {
 /// Channels and attributes are sorted by name, as the format asks for and repeatable bytes need.
 ///
 /// # Errors
-/// [`Error::Picture`] when [`Picture::check`] finds a fault or an attribute has a name that
-/// OpenEXR keeps for itself; otherwise as [`whole::write()`].
+/// [`Error::Write`], of the kind `InvalidInput` when [`Picture::check`] finds a fault or an
+/// attribute has a name that OpenEXR keeps for itself; otherwise as [`whole::write()`].
 pub fn write(path: &Path, picture: &Picture) -> Result<(), Error> {
-    let contradiction = |reason| Error::Picture {
-        path: path.to_owned(),
-        reason,
-    };
-    picture.check().map_err(contradiction)?;
-    let image = to_image(picture);
+    let contradiction = |reason: String| io::Error::new(io::ErrorKind::InvalidInput, reason);
     whole::write(path, |file| {
-        let refused = |source| Error::Write {
-            path: path.to_owned(),
-            source,
-        };
-        let written = image.write().to_unbuffered(&mut *file);
+        picture.check().map_err(contradiction)?;
+        let written = to_image(picture).write().to_unbuffered(&mut *file);
         written.map_err(|failure| match failure {
-            Failure::Io(source) => refused(source),
+            Failure::Io(source) => source,
             other => contradiction(other.to_string()),
         })?;
-        attribute_order::sort(file).map_err(refused)
+        attribute_order::sort(file)
     })
 }
 
@@ -62,32 +54,32 @@ pub fn write(path: &Path, picture: &Picture) -> Result<(), Error> {
 /// name.
 ///
 /// # Errors
-/// [`Error::Read`] when the file cannot be read; [`Error::Content`] when it is not OpenEXR, is
+/// [`Error::Read`] when the file cannot be read, of the kind `InvalidData` when it is not OpenEXR, is
 /// damaged, has several parts or subsampled channels, or is cropped (its data window is not its
 /// display window).
 pub fn read(path: &Path) -> Result<Picture, Error> {
-    let unreadable = |source| Error::Read {
+    let content = |reason: String| io::Error::new(io::ErrorKind::InvalidData, reason);
+    let read = File::open(path).and_then(|file| {
+        let image = ::exr::image::read::read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .all_layers()
+            .all_attributes()
+            .from_buffered(BufReader::new(file))
+            .map_err(|failure| match failure {
+                Failure::Io(source) => source,
+                Failure::Invalid(reason) => {
+                    content(format!("it is no sound OpenEXR file ({reason})"))
+                }
+                other => content(other.to_string()),
+            })?;
+        from_image(image).map_err(content)
+    });
+    read.map_err(|source| Error::Read {
         path: path.to_owned(),
         source,
-    };
-    let content = |reason| Error::Content {
-        path: path.to_owned(),
-        reason,
-    };
-    let file = File::open(path).map_err(unreadable)?;
-    let image = ::exr::image::read::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .all_layers()
-        .all_attributes()
-        .from_buffered(BufReader::new(file))
-        .map_err(|failure| match failure {
-            Failure::Io(source) => unreadable(source),
-            Failure::Invalid(reason) => content(format!("it is no sound OpenEXR file ({reason})")),
-            other => content(other.to_string()),
-        })?;
-    from_image(image).map_err(content)
+    })
 }
 
 impl Picture {
@@ -108,7 +100,6 @@ impl Picture {
     }
 }
 
-/// The picture as the `exr` crate wants it.
 fn to_image(picture: &Picture) -> Image<Layer<AnyChannels<FlatSamples>>> {
     let channels = picture.channels.iter().map(|channel| {
         let samples = match &channel.values {
@@ -135,7 +126,6 @@ fn to_image(picture: &Picture) -> Image<Layer<AnyChannels<FlatSamples>>> {
     image
 }
 
-/// A picture out of what the `exr` crate read.
 fn from_image(image: FlatImage) -> Result<Picture, String> {
     let display = image.attributes.display_window;
     let mut layers: Layers<AnyChannels<FlatSamples>> = image.layer_data;
@@ -153,7 +143,13 @@ fn from_image(image: FlatImage) -> Result<Picture, String> {
         }
         picture.channels.push(Channel {
             name: string(&channel.name),
-            values: from_samples(channel.sample_data),
+            values: match channel.sample_data {
+                FlatSamples::F16(values) => {
+                    Values::F32(values.iter().map(|half| half.to_f32()).collect())
+                }
+                FlatSamples::F32(values) => Values::F32(values),
+                FlatSamples::U32(values) => Values::U32(values),
+            },
         });
     }
     let (own, shared) = (layer.attributes.other, image.attributes.other);
@@ -165,16 +161,6 @@ fn from_image(image: FlatImage) -> Result<Picture, String> {
     Ok(picture)
 }
 
-/// The values of a channel.
-fn from_samples(samples: FlatSamples) -> Values {
-    match samples {
-        FlatSamples::F16(values) => Values::F32(values.iter().map(|half| half.to_f32()).collect()),
-        FlatSamples::F32(values) => Values::F32(values),
-        FlatSamples::U32(values) => Values::U32(values),
-    }
-}
-
-/// An attribute for the file.
 fn to_value(attribute: &Attribute) -> AttributeValue {
     match attribute {
         Attribute::Text(value) => AttributeValue::Text(text(value)),

@@ -1,21 +1,22 @@
 //! Pictures and the files they are kept in: OpenEXR with everything, PNG to look at.
 //!
 //! A [`Picture`] is named channels over one grid of pixels, and attributes that say where they
-//! come from. [`exr`] writes and reads it without loss, [`png`] shows its R, G, B, [`whole`] sees
-//! to it that a file appears complete or not at all.
+//! come from. [`exr`] writes and reads it without loss, [`png`] shows its R, G, B, [`whole`] makes
+//! sure that a file appears complete or not at all.
 
 pub mod attribute_order;
 pub mod exr;
 pub mod names;
 pub mod pixels;
 pub mod png;
-pub mod provenance;
 pub mod spectral;
 pub mod whole;
 
 use std::collections::HashSet;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+
+use sha2::{Digest, Sha256};
 
 /// Named channels over `width` × `height` pixels, with attributes.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,16 +25,16 @@ pub struct Picture {
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// The channels; their names differ.
+    /// Channels of different names.
     pub channels: Vec<Channel>,
-    /// Names and values of the custom attributes; the names differ.
+    /// Names and values of the custom attributes; no name occurs twice.
     pub attributes: Vec<(String, Attribute)>,
 }
 
 /// One number per pixel, with a name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
-    /// The name as other programs see it; a dot separates layer and component.
+    /// Name in the file; a dot separates layer and component.
     pub name: String,
     /// `width` × `height` values, rows from the top, each from the left.
     pub values: Values,
@@ -61,90 +62,35 @@ pub enum Attribute {
     Double(f64),
 }
 
-/// Why a picture could not be written or read.
+/// Why a file could not be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The operating system refused to write.
+    /// Nothing has been written. The kind of the source is `InvalidInput` where the picture contradicts
+    /// itself or breaks a rule of the file format.
     #[error("cannot write {}: {source}", path.display())]
     Write {
         /// The file that was to be written.
         path: PathBuf,
-        /// What the operating system says.
+        /// What the operating system or the file format objects to.
         source: io::Error,
     },
-    /// The directory the file belongs into does not take new files.
-    #[error("cannot write {}: no file can be created in the directory {}: {source}", path.display(), directory.display())]
-    Directory {
-        /// The file that was to be written.
-        path: PathBuf,
-        /// The directory.
-        directory: PathBuf,
-        /// What the operating system says.
-        source: io::Error,
-    },
-    /// The path names something that must not be replaced.
-    #[error("cannot write {}: {reason}", path.display())]
-    Target {
-        /// The file that was to be written.
-        path: PathBuf,
-        /// What stands there.
-        reason: &'static str,
-    },
-    /// The operating system refused to read.
+    /// The kind of the source is `InvalidData` where the file is no OpenEXR file, or one that is
+    /// damaged or holds what a [`Picture`] cannot.
     #[error("cannot read {}: {source}", path.display())]
     Read {
         /// The file that was to be read.
         path: PathBuf,
-        /// What the operating system says.
+        /// What the operating system says, or what is wrong with the file.
         source: io::Error,
     },
-    /// The file is no OpenEXR file, or one that is damaged or holds what a [`Picture`] cannot.
-    #[error("cannot read {}: {reason}", path.display())]
-    Content {
-        /// The file that was to be read.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: String,
-    },
-    /// The picture contradicts itself or breaks a rule of the file format.
-    #[error("cannot write {}: {reason}", path.display())]
-    Picture {
-        /// The file that was to be written.
-        path: PathBuf,
-        /// What is wrong with the picture.
-        reason: String,
-    },
-}
-
-impl Error {
-    /// The file this is about.
-    #[must_use]
-    pub fn path(&self) -> &Path {
-        match self {
-            Self::Write { path, .. }
-            | Self::Directory { path, .. }
-            | Self::Target { path, .. }
-            | Self::Read { path, .. }
-            | Self::Content { path, .. }
-            | Self::Picture { path, .. } => path,
-        }
-    }
 }
 
 impl Values {
-    /// How many values there are.
-    #[must_use]
-    pub fn len(&self) -> usize {
+    fn len(&self) -> usize {
         match self {
             Self::F32(values) => values.len(),
             Self::U32(values) => values.len(),
         }
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 }
 
@@ -175,6 +121,12 @@ impl Attribute {
     }
 }
 
+/// SHA-256 (FIPS 180-4) of a text's UTF-8 bytes, 64 hexadecimal digits: the hash of scenes.
+pub fn hash(text: &str) -> String {
+    let digest = Sha256::digest(text.as_bytes());
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 impl Picture {
     /// A picture without channels and attributes.
     #[must_use]
@@ -187,8 +139,8 @@ impl Picture {
         }
     }
 
-    /// Adds three floating-point channels, one for each suffix, of a value with three components:
-    /// `("", RGB)` gives R, G, B and `("N", XYZ)` gives N.X, N.Y, N.Z.
+    /// Adds a floating-point channel for each component of a value: `("", RGB)` gives R, G, B and
+    /// `("N", XYZ)` gives N.X, N.Y, N.Z.
     pub fn push_triple(&mut self, layer: &str, components: [&str; 3], values: &[[f32; 3]]) {
         for (index, component) in components.into_iter().enumerate() {
             let plane = values.iter().map(|value| value[index]).collect();
@@ -230,8 +182,8 @@ impl Picture {
     /// Checks that the picture is consistent and that its names fit the file format.
     ///
     /// # Errors
-    /// A sentence about the first fault: no pixels or channels, a channel of another length, a
-    /// name that is empty, too long, not plain or used twice.
+    /// A description of the first fault: no pixels or channels, a channel of another length, a
+    /// name that is empty, too long, not plain ASCII or used twice.
     pub fn check(&self) -> Result<(), String> {
         let Some(pixels) = self.width.checked_mul(self.height).filter(|&n| n > 0) else {
             let (width, height) = (self.width, self.height);

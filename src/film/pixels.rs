@@ -1,4 +1,4 @@
-//! Sums over samples: what a render accumulates, and what that says of the picture.
+//! Sums over samples, and the means and standard errors that follow from them.
 //!
 //! Every pixel keeps one sum a replicate, in f64, added in the order of its samples; means,
 //! standard errors and the picture's colours are formed from those sums alone, so they do not
@@ -27,13 +27,13 @@ pub struct Estimate<const N: usize = 3> {
 }
 
 impl<const N: usize> Estimate<N> {
-    /// Of what has no samples.
+    /// The estimate where there are no samples.
     pub const UNKNOWN: Self = Self {
         mean: [f64::NAN; N],
         standard_error: [f64::NAN; N],
     };
 
-    /// From the sums over the samples of each replicate, which are as many as `counts` says, channels
+    /// Estimates from the sums over each replicate's samples, whose numbers are `counts`; channels are
     /// mapped by `channels`.
     ///
     /// With nᵣ samples in replicate r and m its mean, the squared standard error is
@@ -80,13 +80,8 @@ pub fn is_finite<T: Scalar>(xyz: &[T; 3]) -> bool {
 }
 
 impl Pixels {
-    /// Zero sums for this many pixels, with room for any number of samples.
-    pub fn new(pixels: usize, replicates: Replicates) -> Self {
-        Self::for_samples(pixels, replicates, u32::MAX)
-    }
-
     /// Zero sums for this many pixels of at most `samples` samples each.
-    pub fn for_samples(pixels: usize, replicates: Replicates, samples: u32) -> Self {
+    pub fn new(pixels: usize, replicates: Replicates, samples: u32) -> Self {
         let slots = replicates.count(samples) as usize;
         Self {
             replicates,
@@ -118,17 +113,7 @@ impl Pixels {
         rejected
     }
 
-    /// Replicates that `samples` samples reach.
-    pub fn replicates(&self, samples: u32) -> u32 {
-        self.replicates.count(samples)
-    }
-
-    /// Samples of each replicate of every pixel after `samples` samples.
-    pub fn counts(&self, samples: u32) -> Vec<f64> {
-        self.replicates.counts(samples)
-    }
-
-    /// Mean of a pixel's samples in each of its replicates, which are as many as `counts` says.
+    /// Mean of a pixel's samples in each of its replicates, whose numbers of samples are `counts`.
     pub fn replicate_means(&self, pixel: usize, counts: &[f64]) -> impl Iterator<Item = [f64; 3]> {
         let sums = &self.sums[pixel * self.slots..][..self.slots];
         sums.iter()
@@ -136,8 +121,8 @@ impl Pixels {
             .map(|(sum, own)| sum.map(|s| s / own))
     }
 
-    /// Mean and standard error of a pixel, channels mapped by `channels`; its replicates have as many
-    /// samples as [`counts`](Self::counts) says.
+    /// Mean and standard error of a pixel, channels mapped by `channels`; `counts` are the numbers of
+    /// samples of its replicates.
     #[inline]
     pub fn estimate(
         &self,

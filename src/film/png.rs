@@ -8,9 +8,9 @@
 //!    and approaches 1 above it; the others keep their ratio to it, and so the hue.
 //! 4. *Encoding*: the sRGB transfer function (IEC 61966-2-1:1999, 5.2), rounded to nearest.
 //!
-//! A pixel that is not finite is painted pure magenta, to be seen rather than hidden.
+//! A pixel that is not finite is painted pure magenta, so that it shows.
 
-use std::io::{BufWriter, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use image::codecs::png::PngEncoder;
@@ -19,83 +19,76 @@ use image::{ExtendedColorType, ImageEncoder, ImageError};
 use super::{Error, whole};
 use crate::spectrum::observer::luminance;
 
-/// Part of the finite pixels that may be brighter than white.
+/// Share of the finite pixels that may be brighter than white.
 const BRIGHTEST: f64 = 0.01;
 /// A picture is lightened until its percentile reaches this, the usual mid-grey of 18 %.
 const MID_GREY: f64 = 0.18;
 /// Where the tone curve leaves the identity: white (1) comes to lie at 0.9, its middle.
 const KNEE: f64 = 0.8;
-/// What pixels that are not finite are painted.
 const NOT_FINITE: [u8; 3] = [255, 0, 255];
 
 /// Writes a preview of `width` × `height` linear Rec. 709 colours, rows from the top, whole or
 /// not at all; returns the factor of [`exposure`] it used.
 ///
 /// # Errors
-/// [`Error::Picture`] when the number of pixels is not `width` × `height` or not one that PNG can
-/// hold; otherwise as [`whole::write()`].
+/// As [`write_colours`].
 pub fn write_preview(
     path: &Path,
     width: usize,
     height: usize,
     rgb: &[[f32; 3]],
 ) -> Result<f64, Error> {
-    let contradiction = |reason| Error::Picture {
-        path: path.to_owned(),
-        reason,
-    };
-    if rgb.is_empty() || width.checked_mul(height) != Some(rgb.len()) {
-        let count = rgb.len();
-        return Err(contradiction(format!(
-            "{count} pixels are no {width} × {height}"
-        )));
-    }
     let exposure = exposure(rgb);
-    let bytes: Vec<u8> = rgb
-        .iter()
-        .flat_map(|&pixel| encode(pixel, exposure))
-        .collect();
-    write_bytes(path, width, height, &bytes)?;
+    let colours: Vec<[u8; 3]> = rgb.iter().map(|&pixel| encode(pixel, exposure)).collect();
+    write_colours(path, width, height, &colours)?;
     Ok(exposure)
 }
 
 /// Writes `width` × `height` sRGB colours of three bytes, rows from the top, whole or not at all.
 ///
 /// # Errors
-/// As [`write_preview`].
-pub fn write_bytes(path: &Path, width: usize, height: usize, bytes: &[u8]) -> Result<(), Error> {
-    let contradiction = |reason| Error::Picture {
-        path: path.to_owned(),
-        reason,
-    };
-    let refused = |source| Error::Write {
-        path: path.to_owned(),
-        source,
-    };
-    let (Ok(columns), Ok(rows)) = (u32::try_from(width), u32::try_from(height)) else {
-        return Err(contradiction(format!(
-            "{width} × {height} is too large for PNG"
-        )));
-    };
+/// [`Error::Write`], of the kind `InvalidInput` when the number of pixels is not `width` × `height` or
+/// not one that PNG can hold; otherwise as [`whole::write()`].
+pub fn write_colours(
+    path: &Path,
+    width: usize,
+    height: usize,
+    colours: &[[u8; 3]],
+) -> Result<(), Error> {
+    let contradiction = |reason: String| io::Error::new(io::ErrorKind::InvalidInput, reason);
     whole::write(path, |file| {
+        let count = colours.len();
+        if count == 0 || width.checked_mul(height) != Some(count) {
+            let reason = format!("{count} pixels are no {width} × {height}");
+            return Err(contradiction(reason));
+        }
+        let (Ok(columns), Ok(rows)) = (u32::try_from(width), u32::try_from(height)) else {
+            return Err(contradiction(format!(
+                "{width} × {height} is too large for PNG"
+            )));
+        };
         let mut out = BufWriter::new(file);
-        let encoder = PngEncoder::new(&mut out);
-        encoder
-            .write_image(bytes, columns, rows, ExtendedColorType::Rgb8)
+        PngEncoder::new(&mut out)
+            .write_image(
+                colours.as_flattened(),
+                columns,
+                rows,
+                ExtendedColorType::Rgb8,
+            )
             .map_err(|error| match error {
-                ImageError::IoError(source) => refused(source),
+                ImageError::IoError(source) => source,
                 other => contradiction(other.to_string()),
             })?;
-        out.flush().map_err(refused)
+        out.flush()
     })
 }
 
 /// The factor a picture is exposed by: 1 while the 99th percentile of its luminance lies between
-/// mid-grey (0.18) and white (1); otherwise what brings it to the nearer of the two.
+/// mid-grey (0.18) and white (1); otherwise the factor that takes the percentile to the nearer of
+/// the two.
 ///
 /// The percentile is the luminance of rank ⌈0.99 n⌉ among the n finite pixels. A picture that is
 /// black there keeps exposure 1.
-#[must_use]
 pub fn exposure(rgb: &[[f32; 3]]) -> f64 {
     let finite = rgb.iter().filter(|pixel| is_finite(**pixel));
     let mut luminances: Vec<f64> = finite
@@ -131,7 +124,6 @@ pub fn encode(rgb: [f32; 3], exposure: f64) -> [u8; 3] {
     inside.map(|component| quantize(transfer(component / largest * curve)))
 }
 
-/// Whether all components are finite.
 fn is_finite(rgb: [f32; 3]) -> bool {
     rgb.into_iter().all(f32::is_finite)
 }

@@ -12,64 +12,46 @@ use super::{Attribute, Channel, Picture, names};
 const EMISSIVE_UNITS: &str = "W.m^-2.sr^-1";
 
 /// The name of the channel of unpolarised radiance at `nm` nanometres: `S0.550,000000nm`.
-#[must_use]
 pub fn channel_name(nm: f64) -> String {
     let digits = format!("{nm:.6}").replace('.', ",");
     format!("S0.{digits}nm")
 }
 
 /// The wavelength in nm of a channel of unpolarised radiance; `None` for other channels.
-#[must_use]
 pub fn wavelength(channel_name: &str) -> Option<f64> {
     let digits = channel_name.strip_prefix("S0.")?.strip_suffix("nm")?;
     let nm: f64 = digits.replace(',', ".").parse().ok()?;
     (nm.is_finite() && nm > 0.0).then_some(nm)
 }
 
-/// A bin of a spectral picture.
+/// A bin of a spectral picture: the box between the midpoints to its neighbours.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bin {
     /// Nominal wavelength, nm.
     pub nm: f64,
-    /// Relative sensitivity: wavelengths in nm and values, linear between them. Left empty, the
-    /// bin is the box between the midpoints to its neighbours.
-    pub sensitivity: Vec<(f64, f64)>,
     /// Spectral radiance, W·m⁻²·sr⁻¹·nm⁻¹, one value a pixel.
     pub values: Vec<f32>,
-    /// Standard error of each value; left empty where it is not known.
-    pub standard_errors: Vec<f32>,
+    /// Standard error of each value, where it is known.
+    pub standard_errors: Option<Vec<f32>>,
 }
 
 impl Picture {
     /// Adds bins as channels, with the attributes of the spectral layout.
-    pub fn push_spectral(&mut self, bins: Vec<Bin>) {
-        self.attributes.push(text("spectralLayoutVersion", "1.0"));
-        self.attributes.push(text("emissiveUnits", EMISSIVE_UNITS));
+    pub fn push_spectral(&mut self, bins: impl IntoIterator<Item = Bin>) {
+        let layout = [
+            ("spectralLayoutVersion", "1.0"),
+            ("emissiveUnits", EMISSIVE_UNITS),
+        ];
+        let text =
+            |(name, value): (&str, &str)| (name.to_owned(), Attribute::Text(value.to_owned()));
+        self.attributes.extend(layout.map(text));
         for bin in bins {
             let name = channel_name(bin.nm);
-            if !bin.sensitivity.is_empty() {
-                self.attributes
-                    .push(text(&name, &sensitivity(&bin.sensitivity)));
-            }
-            if !bin.standard_errors.is_empty() {
+            if let Some(errors) = bin.standard_errors {
                 let name = names::in_layer(names::STANDARD_ERROR, &name);
-                self.channels
-                    .push(Channel::float(name, bin.standard_errors));
+                self.channels.push(Channel::float(name, errors));
             }
             self.channels.push(Channel::float(name, bin.values));
         }
     }
-}
-
-/// A text attribute.
-fn text(name: &str, value: &str) -> (String, Attribute) {
-    (name.to_owned(), Attribute::Text(value.to_owned()))
-}
-
-/// A sensitivity as the layout writes it, with decimal dots: `380nm:0.5;390nm:0.6;`.
-fn sensitivity(samples: &[(f64, f64)]) -> String {
-    samples
-        .iter()
-        .map(|(nm, value)| format!("{nm}nm:{value};"))
-        .collect()
 }

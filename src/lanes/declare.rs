@@ -3,6 +3,8 @@
 
 use std::ops::{Bound, RangeBounds};
 
+use glam::DVec3;
+
 use crate::spectrum::Spectrum;
 use crate::spectrum::ior::RefractiveIndex;
 
@@ -33,6 +35,12 @@ impl Range {
         high: Bound::Unbounded,
     };
 
+    /// Numbers from 0.
+    pub const NOT_NEGATIVE: Self = Self {
+        low: Bound::Included(0.0),
+        high: Bound::Unbounded,
+    };
+
     /// Numbers from `low` to `high`, both allowed.
     pub const fn between(low: f64, high: f64) -> Self {
         Self {
@@ -48,16 +56,13 @@ impl Range {
 
     /// What a message expects.
     pub fn words(&self) -> String {
-        let low = match self.low {
-            Bound::Included(low) => Some(format!("of at least {low}")),
-            Bound::Excluded(low) => Some(format!("greater than {low}")),
+        let end = |bound, included, excluded| match bound {
+            Bound::Included(end) => Some(format!("{included} {end}")),
+            Bound::Excluded(end) => Some(format!("{excluded} {end}")),
             Bound::Unbounded => None,
         };
-        let high = match self.high {
-            Bound::Included(high) => Some(format!("of at most {high}")),
-            Bound::Excluded(high) => Some(format!("less than {high}")),
-            Bound::Unbounded => None,
-        };
+        let low = end(self.low, "of at least", "greater than");
+        let high = end(self.high, "of at most", "less than");
         let ends: Vec<String> = low.into_iter().chain(high).collect();
         if ends.is_empty() {
             "a finite number".to_owned()
@@ -85,17 +90,37 @@ pub enum Quantity {
     Metal,
     /// n of a transparent medium: measured and named, a number, or a formula.
     Glass,
+    /// A position in the world, scene units.
+    Point,
+    /// A vector other than zero; its length means nothing.
+    Direction,
+    /// A table with a key for each of these.
+    Table(&'static [Parameter]),
 }
 
 impl Quantity {
+    pub const fn number(unit: &'static str, range: Range) -> Self {
+        Self::Number { unit, range }
+    }
+
     /// As how many spectra the loop reads it.
     pub const fn spectra(self) -> usize {
         match self {
-            Self::True | Self::Number { .. } => 0,
             Self::Spectrum(_) => 1,
             Self::TwoSpectra(_) | Self::Metal | Self::Glass => 2,
+            _ => 0,
         }
     }
+}
+
+/// What is meant where a key is left out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Usual {
+    /// This number, or this value at all wavelengths.
+    Number(f64),
+    Direction(DVec3),
+    /// No values: what the key describes is not there.
+    Nothing,
 }
 
 /// A key and its value.
@@ -105,9 +130,28 @@ pub struct Parameter {
     /// What it is, in words.
     pub what: &'static str,
     pub quantity: Quantity,
-    /// The number, or the same at all wavelengths, that is meant where the key is left out; without
-    /// one, it must be there.
-    pub default: Option<f64>,
+    /// What is meant where the key is left out; `None` if it must be there.
+    pub default: Option<Usual>,
+}
+
+impl Parameter {
+    /// One that must be there.
+    pub const fn new(key: &'static str, what: &'static str, quantity: Quantity) -> Self {
+        Self {
+            key,
+            what,
+            quantity,
+            default: None,
+        }
+    }
+
+    /// One that may be left out.
+    pub const fn usually(self, usual: Usual) -> Self {
+        Self {
+            default: Some(usual),
+            ..self
+        }
+    }
 }
 
 /// A kind of thing.
@@ -126,15 +170,15 @@ impl Declaration {
     /// A kind whose key says everything.
     pub const fn new(key: &'static str, what: &'static str, quantity: Quantity) -> Self {
         Self {
-            main: Parameter {
-                key,
-                what,
-                quantity,
-                default: None,
-            },
+            main: Parameter::new(key, what, quantity),
             within: None,
             beside: &[],
         }
+    }
+
+    /// The kind with these parameters beside the main one.
+    pub const fn beside(self, beside: &'static [Parameter]) -> Self {
+        Self { beside, ..self }
     }
 
     /// As how many spectra the loop reads its parameters.
@@ -158,4 +202,31 @@ pub enum Value {
     Spectrum(Spectrum),
     /// Of a [`Quantity::Metal`] or [`Quantity::Glass`].
     Index(RefractiveIndex),
+    Point(DVec3),
+    /// Of length 1.
+    Direction(DVec3),
+}
+
+impl Value {
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            _ => None,
+        }
+    }
+
+    pub fn spectrum(&self) -> Option<&Spectrum> {
+        match self {
+            Self::Spectrum(spectrum) => Some(spectrum),
+            _ => None,
+        }
+    }
+
+    /// The vector of a point or direction.
+    pub fn vector(&self) -> Option<DVec3> {
+        match self {
+            Self::Point(vector) | Self::Direction(vector) => Some(*vector),
+            _ => None,
+        }
+    }
 }

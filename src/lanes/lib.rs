@@ -28,16 +28,78 @@ macro_rules! inlined {
     };
 }
 
+/// Kinds of one thing, one a file: their enum from a list, methods that give constants of the trait
+/// that they have in common, and a macro `of!` for any item of a kind's type.
+macro_rules! kinds {
+    (
+        $kinds:ident of $trait:ident {
+            $($(#[$attribute:meta])? $kind:ident in $module:ident,)*
+        }
+        $(fn $method:ident(self) -> $type:ty = $constant:ident;)*
+    ) => {
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum $kinds {
+            $(
+                $(#[$attribute])?
+                #[doc = concat!("See [`", stringify!($kind), "`](super::", stringify!($module), "::", stringify!($kind), ").")]
+                $kind,
+            )*
+        }
+
+        /// Evaluates an item of a kind's type.
+        macro_rules! of {
+            ($self:expr, $item:ident) => {
+                match $self {
+                    $(
+                        $(#[$attribute])?
+                        $kinds::$kind => <super::$module::$kind as $trait>::$item,
+                    )*
+                }
+            };
+            ($self:expr, $item:ident $arguments:tt) => {
+                match $self {
+                    $(
+                        $(#[$attribute])?
+                        $kinds::$kind => <super::$module::$kind as $trait>::$item $arguments,
+                    )*
+                }
+            };
+        }
+
+        impl $kinds {
+            /// All of them, in the order in which messages list them.
+            pub const ALL: &'static [Self] = &[$($(#[$attribute])? Self::$kind,)*];
+
+            $(
+                #[doc = concat!("[`", stringify!($trait), "::", stringify!($constant), "`].")]
+                pub const fn $method(self) -> $type {
+                    of!(self, $constant)
+                }
+            )*
+        }
+    };
+}
+
+/// Methods of one expression each, always inlined, as those of lanes must be.
+macro_rules! methods {
+    ($($(#[$attribute:meta])* $visibility:vis fn $method:ident $arguments:tt -> $result:ty = $value:expr;)*) => {
+        $(
+            $(#[$attribute])*
+            #[inline(always)]
+            $visibility fn $method $arguments -> $result {
+                $value
+            }
+        )*
+    };
+}
+
 pub mod camera;
 pub mod declare;
-#[doc(hidden)]
-pub mod doors;
 pub mod field;
 pub mod integrate;
 pub mod light;
 pub mod material;
 pub mod math;
-#[cfg(feature = "planted")]
 pub mod planted;
 pub mod root;
 pub mod sample;

@@ -1,5 +1,5 @@
-//! Deliberate mistakes in the loop itself, to see whether the statistical suite notices them: only
-//! in builds with the feature `planted`, which the renderer that ships has not.
+//! Deliberate mistakes in the loop itself, to see whether the statistical suite notices them. They
+//! are made in builds with the feature `planted` alone, which the renderer that ships does not have.
 
 use crate::math::lanes::{Lanes, Real, Scalar};
 
@@ -12,6 +12,12 @@ pub enum Planted {
     Polarisation,
 }
 
+/// Whether a mistake is made.
+#[inline(always)]
+fn makes(planted: Option<Planted>, mistake: Planted) -> bool {
+    cfg!(feature = "planted") && planted == Some(mistake)
+}
+
 /// The weight of sampled light at a surface that it meets under `cosine`.
 #[inline(always)]
 pub fn light_weight<L: Lanes>(
@@ -20,7 +26,7 @@ pub fn light_weight<L: Lanes>(
     weight: L::Real,
     cosine: L::Real,
 ) -> L::Real {
-    if planted == Some(Planted::Cosine) {
+    if makes(planted, Planted::Cosine) {
         // Along the surface the factor would have no bound.
         weight / cosine.max(l.real(0.01))
     } else {
@@ -31,7 +37,7 @@ pub fn light_weight<L: Lanes>(
 /// The reflectance for unpolarised light, from those of both polarisations.
 #[inline(always)]
 pub fn unpolarised<T: Scalar>(planted: Option<Planted>, [s, p]: [T; 2]) -> T {
-    if planted == Some(Planted::Polarisation) {
+    if makes(planted, Planted::Polarisation) {
         (s + s + p) * T::from_f64(1.0 / 3.0)
     } else {
         (s + p) * T::from_f64(0.5)

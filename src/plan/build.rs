@@ -1,9 +1,11 @@
 //! From a scene and its choices to the tables of the loop.
 
+use std::f64::consts::PI;
+
 use glam::DVec3;
 
 use super::PlanError;
-use super::bounds::about_camera;
+use super::bounds::{self, about_camera};
 use super::choose::Choices;
 use super::occluders::occluders;
 use crate::camera::LaneCamera;
@@ -13,17 +15,16 @@ use crate::integrate::list::List;
 use crate::integrate::model::{Appearance, Many, Model};
 use crate::integrate::needs::Needs;
 use crate::integrate::parts::Parts;
-use crate::light::{self, LaneLight, LightShape, SmallLights};
-use crate::material::Record;
+use crate::light::{Emitting, LaneLight, LightShape, SmallLights};
 use crate::math::affine::Affine;
 use crate::math::lanes::Scalar;
 use crate::sample::sequence::Sequence;
-use crate::scene::{Emission, Light, Named, Object, Scene, Shape, Sides, Surface};
+use crate::scene::{Light, Scene, Shape};
 use crate::shape::hierarchy::Bounds;
 use crate::shape::lanes::LaneShape;
 use crate::shape::lanes::implicit::LaneImplicit;
 use crate::shape::resolve::Resolver;
-use crate::shape::{Placed, ShapeKind};
+use crate::shape::{Emitter, Placed, ShapeKind};
 use crate::spectrum::Spectrum;
 use crate::spectrum::cells;
 use crate::spectrum::grid::{SpectrumBank, WavelengthGrid};
@@ -49,20 +50,17 @@ pub fn build<T: Scalar>(
 ) -> Result<(Model<T>, Spectrometer<T>), PlanError> {
     let mut builder = Builder::<T>::new(choices.wavelengths as usize, grid, scene);
     for (index, object) in scene.objects.iter().enumerate() {
-        let placed = builder
-            .place(scene, index)
-            .ok_or(PlanError::NotInvertible {
-                name: object.name.clone(),
-            })?;
-        builder.dress(scene, index, &placed);
+        let placed = builder.place(scene, index);
+        let maps = placed.ok_or_else(|| PlanError::NotInvertible {
+            name: object.name.clone(),
+        })?;
+        builder.appearance(scene, index, &maps);
     }
     for light in &scene.lights {
-        builder.free_light(scene, light);
+        builder.source(light, scene.camera.from);
     }
-    let environment = scene
-        .environment
-        .as_ref()
-        .map(|spectrum| builder.spectrum(spectrum));
+    let environment = scene.environment.as_ref();
+    let environment = environment.map(|spectrum| builder.spectrum(spectrum));
     let lights = builder.pick();
     let all: Vec<u32> = (0..scene.objects.len() as u32).collect();
     let occluders = if choices.full {
@@ -73,15 +71,12 @@ pub fn build<T: Scalar>(
     };
     let parts = Parts::new(&builder.shapes, &builder.appearances);
     let camera = LaneCamera::new(&scene.camera, scene.image.size);
-    let list_costs: usize = builder
-        .bounded
-        .iter()
-        .map(|item| match builder.shapes[item.0 as usize].ball() {
-            Some(_) => 1,
-            None => OTHER,
-        })
-        .sum();
-    let many = list_costs > LARGEST_LIST;
+    let bounded = builder.bounded.iter();
+    let costs = bounded.map(|(k, _)| match builder.shapes[*k as usize].ball() {
+        Some(_) => 1,
+        None => OTHER,
+    });
+    let many = costs.sum::<usize>() > LARGEST_LIST;
     let model = Model {
         hierarchy: many.then(|| {
             Many::new(
@@ -115,16 +110,9 @@ pub fn build<T: Scalar>(
         environment,
         spectra: builder.bank,
         resolver: builder.resolver,
-        #[cfg(feature = "planted")]
         planted: None,
     };
     Ok((model, Spectrometer::new(grid, choices.wavelengths as usize)))
-}
-
-/// Where an object stands: its map about the camera and the inverse.
-struct Placement {
-    to_world: Affine,
-    inverse: Affine,
 }
 
 struct Builder<'a, T> {
@@ -144,10 +132,10 @@ struct Builder<'a, T> {
 
 impl<'a, T: Scalar> Builder<'a, T> {
     fn new(wavelengths: usize, grid: &'a WavelengthGrid, scene: &Scene) -> Self {
-        let placed = |o: &Named<Object>| {
-            super::bounds::bounds(&o.value.shape, &about_camera(scene, &o.value))
-        };
-        let bounds = scene.objects.iter().filter_map(placed);
+        let bounds = scene.objects.iter().filter_map(|object| {
+            let to_world = about_camera(scene, &object.value);
+            bounds::bounds(&object.value.shape, &to_world)
+        });
         Self {
             bank: SpectrumBank::new(wavelengths),
             grid,
@@ -160,7 +148,7 @@ impl<'a, T: Scalar> Builder<'a, T> {
             resolver: Resolver::default(),
             bounded: Vec::new(),
             unbounded: Vec::new(),
-            reach: bounds.map(|b| super::bounds::reach(&b)).fold(0.0, f64::max),
+            reach: bounds.map(|b| bounds::reach(&b)).fold(0.0, f64::max),
         }
     }
 
@@ -180,24 +168,22 @@ impl<'a, T: Scalar> Builder<'a, T> {
         if let Some((_, starts)) = self.known_indices.iter().find(|(i, _)| i == index) {
             return *starts;
         }
-        let nodes: Vec<(f64, f64)> = match index {
-            RefractiveIndex::Complex { .. } => self
-                .grid
-                .edges()
-                .windows(2)
-                .map(|cell| index.n_k((cell[0] + cell[1]) / 2.0))
-                .collect(),
-            _ => self.grid.edges().iter().map(|&nm| index.n_k(nm)).collect(),
+        let edges = self.grid.edges();
+        let (n, k): (Vec<f64>, Vec<f64>) = match index {
+            RefractiveIndex::Complex { .. } => {
+                let middles = edges.windows(2).map(|cell| (cell[0] + cell[1]) / 2.0);
+                middles.map(|nm| index.n_k(nm)).unzip()
+            }
+            _ => edges.iter().map(|&nm| index.n_k(nm)).unzip(),
         };
-        let n: Vec<f64> = nodes.iter().map(|nk| nk.0).collect();
-        let k: Vec<f64> = nodes.iter().map(|nk| nk.1).collect();
         let starts = [self.bank.push(&n), self.bank.push(&k)];
         self.known_indices.push((index.clone(), starts));
         starts
     }
 
-    /// Places object `index` for the lanes and for the ladder.
-    fn place(&mut self, scene: &Scene, index: usize) -> Option<Placement> {
+    /// Places object `index` for the lanes and for the ladder; its map to the world about the camera,
+    /// and the inverse.
+    fn place(&mut self, scene: &Scene, index: usize) -> Option<[Affine; 2]> {
         let object = &scene.objects[index].value;
         let to_world = about_camera(scene, object);
         let kind = object.shape.kind();
@@ -206,19 +192,16 @@ impl<'a, T: Scalar> Builder<'a, T> {
         if !inverse.rows.iter().flatten().all(|x| x.is_finite()) {
             return None;
         }
-        self.shapes.push(LaneShape::new(
-            kind,
-            &to_world,
-            &inverse,
-            START * self.reach,
-        ));
+        let start = START * self.reach;
+        self.shapes
+            .push(LaneShape::new(kind, &to_world, &inverse, start));
         match &object.shape {
             Shape::Implicit(implicit) => {
                 let lanes = LaneImplicit::new(implicit, &to_world, &inverse).ok()?;
                 self.implicits.push((index as u32, lanes));
             }
             Shape::Canonical(_) => {
-                let surface = &scene.materials[object.material].value.surface;
+                let surface = &scene.material_of(object).surface;
                 let priority = u8::from(surface.kind.refracts());
                 self.resolver.push(index as u32, placed, priority);
             }
@@ -230,24 +213,20 @@ impl<'a, T: Scalar> Builder<'a, T> {
             }
             None => self.unbounded.push(index as u32),
         }
-        Some(Placement { to_world, inverse })
-    }
-
-    /// A surface as the loop reads it.
-    fn record(&mut self, object: &Object, surface: &Surface) -> Record<T> {
-        surface.record(object.size, |value| match value {
-            Value::Number(_) => Vec::new(),
-            Value::Spectrum(spectrum) => vec![self.spectrum(spectrum)],
-            Value::Index(index) => self.refractive_index(index).into(),
-        })
+        Some([to_world, inverse])
     }
 
     /// Gives object `index` its appearance, and makes a light of it if it can be sampled.
-    fn dress(&mut self, scene: &Scene, index: usize, placement: &Placement) {
+    fn appearance(&mut self, scene: &Scene, index: usize, maps: &[Affine; 2]) {
         let object = &scene.objects[index].value;
-        let material = &scene.materials[object.material].value;
+        let material = scene.material_of(object);
+        let surface = material.surface.record(object.size, |value| match value {
+            Value::Spectrum(spectrum) => vec![self.spectrum(spectrum)],
+            Value::Index(index) => self.refractive_index(index).into(),
+            Value::Number(_) | Value::Point(_) | Value::Direction(_) => Vec::new(),
+        });
         let mut appearance = Appearance {
-            surface: self.record(object, &material.surface),
+            surface,
             emission: None,
             emits: [false; 2],
             light: None,
@@ -255,73 +234,57 @@ impl<'a, T: Scalar> Builder<'a, T> {
         };
         if let Some(emission) = &material.emission {
             appearance.emission = Some(self.spectrum(&emission.radiance));
-            appearance.emits = sides(emission.sides);
-            let kind = object.shape.kind();
-            if let Some((shape, area)) = light::of_shape(
-                kind,
-                &placement.to_world,
-                &placement.inverse,
-                appearance.emits,
-            ) {
-                let power = area * std::f64::consts::PI * strength(&emission.radiance);
-                if power > 0.0 {
-                    appearance.light = Some(self.lights.len() as u32);
-                    self.light(shape, power, emission, index as u32);
-                }
+            appearance.emits = emission.sides.front_and_back();
+            let light = LightShape::of_shape(&Emitting {
+                form: object
+                    .shape
+                    .kind()
+                    .map_or(Emitter::Unsampled, ShapeKind::emitter),
+                to_world: &maps[0],
+                inverse: &maps[1],
+                emits: appearance.emits,
+            });
+            if let Some((shape, area)) = light {
+                let power = area * PI * strength(&emission.radiance);
+                appearance.light = self.light(shape, power, &emission.radiance, index as u32);
             }
         }
         self.appearances.push(appearance);
     }
 
-    fn light(&mut self, shape: LightShape<T>, power: f64, emission: &Emission, object: u32) {
-        let spectrum = self.spectrum(&emission.radiance);
-        let light = LaneLight {
-            shape,
-            probability: T::default(),
-            below: T::default(),
-            spectrum,
-            object,
-        };
-        self.lights.push((light, power));
-    }
-
-    /// About the area, over π, that parallel light falls on; planes alone have no size to tell.
-    fn lit_area(&self) -> f64 {
-        if self.reach > 0.0 {
-            self.reach * self.reach
-        } else {
-            1.0
-        }
-    }
-
-    /// A light without a surface.
-    fn free_light(&mut self, scene: &Scene, light: &Light) {
-        let scalars = |v: DVec3| v.to_array().map(T::from_f64);
-        let (shape, spectrum, power) = match light {
-            Light::Point { at, intensity } => (
-                LightShape::Point(scalars(*at - scene.camera.from)),
-                intensity,
-                4.0 * std::f64::consts::PI * strength(intensity),
-            ),
-            Light::Directional {
-                direction,
-                irradiance,
-            } => (
-                LightShape::Directional(scalars(-*direction)),
-                irradiance,
-                std::f64::consts::PI * self.lit_area() * strength(irradiance),
-            ),
-        };
-        if power > 0.0 {
+    /// Lists a light of some power and returns its number.
+    fn light(
+        &mut self,
+        shape: LightShape<T>,
+        power: f64,
+        spectrum: &Spectrum,
+        object: u32,
+    ) -> Option<u32> {
+        (power > 0.0).then(|| {
             let light = LaneLight {
                 shape,
                 probability: T::default(),
                 below: T::default(),
                 spectrum: self.spectrum(spectrum),
-                object: u32::MAX,
+                object,
             };
             self.lights.push((light, power));
-        }
+            self.lights.len() as u32 - 1
+        })
+    }
+
+    /// Lists a light without a surface.
+    fn source(&mut self, light: &Light, camera: DVec3) -> Option<u32> {
+        let spectrum = light.spectrum()?;
+        // Planes alone have no size to tell what parallel light falls on.
+        let area = if self.reach > 0.0 {
+            self.reach * self.reach
+        } else {
+            1.0
+        };
+        let power = light.kind.power(area) * strength(spectrum);
+        let shape = LightShape::of_source(light, camera)?;
+        self.light(shape, power, spectrum, u32::MAX)
     }
 
     /// Probabilities of the lights: half in equal parts, half by power, so that a weak light close
@@ -333,21 +296,19 @@ impl<'a, T: Scalar> Builder<'a, T> {
         let mut sum = 0.0;
         let lights = std::mem::take(&mut self.lights);
         let last = lights.len().saturating_sub(1);
-        lights
-            .into_iter()
-            .enumerate()
-            .map(|(i, (mut light, power))| {
-                sum += 0.5 / count + 0.5 * power / total;
-                let end = if i == last { 1.0 } else { sum };
-                light.below = below;
-                // Uniform numbers are multiples of the step in either precision: among such bounds
-                // the probability is exactly their distance.
-                let next = T::from_f64((end / PROBABILITY_STEP).round() * PROBABILITY_STEP);
-                light.probability = T::from_f64(next.to_f64() - below.to_f64());
-                below = next;
-                light
-            })
-            .collect()
+        let lights = lights.into_iter().enumerate();
+        let picked = lights.map(|(i, (mut light, power))| {
+            sum += 0.5 / count + 0.5 * power / total;
+            let end = if i == last { 1.0 } else { sum };
+            light.below = below;
+            // Uniform numbers are multiples of the step in either precision: among such bounds the
+            // probability is exactly their distance.
+            let next = T::from_f64((end / PROBABILITY_STEP).round() * PROBABILITY_STEP);
+            light.probability = T::from_f64(next.to_f64() - below.to_f64());
+            below = next;
+            light
+        });
+        picked.collect()
     }
 }
 
@@ -358,17 +319,8 @@ const START: f64 = 8.0;
 /// Step of the probabilities of lights: that of uniform numbers in single precision, 2⁻²⁴.
 const PROBABILITY_STEP: f64 = 1.0 / (1 << 24) as f64;
 
-/// Whether front and back emit.
-fn sides(sides: Sides) -> [bool; 2] {
-    match sides {
-        Sides::Front => [true, false],
-        Sides::Back => [false, true],
-        Sides::Both => [true, true],
-    }
-}
-
-/// How much a spectrum counts when lights are chosen: its luminance, and a little of its plain
-/// mean so that light outside of the visible is still sampled.
+/// How much a spectrum counts when lights are chosen: its luminance, and a little of its largest value
+/// so that light outside of the visible is still sampled.
 fn strength(spectrum: &Spectrum) -> f64 {
     spectrum_to_xyz(spectrum)[1] + 1e-3 * spectrum.max_value()
 }

@@ -1,4 +1,4 @@
-//! From a scene and the user's wishes to decisions, in one table.
+//! What is built for a scene: precision, wavelengths, replicates.
 
 use super::PlanError;
 use super::bounds::Blur;
@@ -11,29 +11,6 @@ use crate::scene::{PrecisionChoice, Scene};
 /// Wavelengths per path where the scene does not say.
 pub const DEFAULT_WAVELENGTHS: u32 = 8;
 
-/// Why a precision was chosen.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum PrecisionReason {
-    /// The user said so.
-    Asked {
-        /// What speaks against it.
-        doubt: Option<Doubt>,
-    },
-    /// Hits on implicit surfaces are certified in double.
-    Implicit,
-    /// What single precision may blur decides.
-    Measured(Blur),
-}
-
-/// Why single precision would not have been taken.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Doubt {
-    /// What it may blur is not small enough.
-    Blur(Blur),
-    /// Hits on implicit surfaces are rounded to it, and nobody knows how close their sheets are.
-    Implicit(Blur),
-}
-
 /// What is built for a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Choices {
@@ -41,42 +18,31 @@ pub struct Choices {
     pub full: bool,
     /// Arithmetic of the loop.
     pub precision: Precision,
-    /// Why.
-    pub precision_reason: PrecisionReason,
+    /// Whether the scene names it.
+    pub asked: bool,
+    /// Whether there are implicit surfaces: hits on them are certified in double, and nobody knows how
+    /// close their sheets are.
+    pub implicit: bool,
+    /// What single precision may blur.
+    pub blur: Blur,
     /// Wavelengths per path.
     pub wavelengths: u32,
     /// Independent scrambles.
     pub replicates: Replicates,
 }
 
-/// Decides.
+impl Choices {
+    /// Whether the loop may run in single precision.
+    pub fn single_suffices(&self) -> bool {
+        !self.implicit && self.blur.is_small()
+    }
+}
+
+/// Decides what is built for a scene; `full` keeps what it does not need.
 ///
 /// # Errors
 /// [`PlanError::Wavelengths`] for a count that the loop is not compiled for.
 pub fn choose(scene: &Scene, full: bool) -> Result<Choices, PlanError> {
-    let blur = Blur::new(scene, f32::ROUNDOFF);
-    let (precision, precision_reason) = match scene.image.precision {
-        PrecisionChoice::F32 => {
-            let doubt = if is_implicit(scene) {
-                Some(Doubt::Implicit(blur))
-            } else {
-                (!blur.is_small()).then_some(Doubt::Blur(blur))
-            };
-            (Precision::Single, PrecisionReason::Asked { doubt })
-        }
-        PrecisionChoice::F64 => (Precision::Double, PrecisionReason::Asked { doubt: None }),
-        PrecisionChoice::Auto if is_implicit(scene) => {
-            (Precision::Double, PrecisionReason::Implicit)
-        }
-        PrecisionChoice::Auto => (
-            if blur.is_small() {
-                Precision::Single
-            } else {
-                Precision::Double
-            },
-            PrecisionReason::Measured(blur),
-        ),
-    };
     let wavelengths = scene.image.wavelengths.unwrap_or(DEFAULT_WAVELENGTHS);
     if !matches!(wavelengths, 4 | 8) {
         return Err(PlanError::Wavelengths { count: wavelengths });
@@ -89,11 +55,21 @@ pub fn choose(scene: &Scene, full: bool) -> Result<Choices, PlanError> {
         }
         None => Replicates::Growing,
     };
-    Ok(Choices {
+    let mut choices = Choices {
         full,
-        precision,
-        precision_reason,
+        precision: Precision::Single,
+        asked: scene.image.precision != PrecisionChoice::Auto,
+        implicit: is_implicit(scene),
+        blur: Blur::new(scene, f32::ROUNDOFF),
         wavelengths,
         replicates,
-    })
+    };
+    let single = match scene.image.precision {
+        PrecisionChoice::Auto => choices.single_suffices(),
+        asked => asked == PrecisionChoice::F32,
+    };
+    if !single {
+        choices.precision = Precision::Double;
+    }
+    Ok(choices)
 }

@@ -3,12 +3,9 @@
 use crate::scene::{Light, Material, Scene, Shape};
 use crate::spectrum::Spectrum;
 
-/// Materials that some object wears.
-fn worn(scene: &Scene) -> impl Iterator<Item = &Material> {
-    scene
-        .objects
-        .iter()
-        .map(|object| &scene.materials[object.value.material].value)
+fn materials(scene: &Scene) -> impl Iterator<Item = &Material> {
+    let objects = scene.objects.iter();
+    objects.map(|object| scene.material_of(&object.value))
 }
 
 /// Whether some object is an implicit surface.
@@ -19,35 +16,22 @@ pub fn is_implicit(scene: &Scene) -> bool {
 
 /// The spectra that light takes on its way, other than refractive indices.
 pub fn spectra(scene: &Scene) -> impl Iterator<Item = &Spectrum> {
-    let surfaces = worn(scene).flat_map(|material| material.surface.spectra());
-    let emissions = worn(scene).filter_map(|material| material.emission.as_ref());
-    let lights = scene.lights.iter().map(|light| match light {
-        Light::Point { intensity, .. } => intensity,
-        Light::Directional { irradiance, .. } => irradiance,
-    });
+    let surfaces = materials(scene).flat_map(|material| material.surface.spectra());
+    let emissions = materials(scene).filter_map(|material| material.emission.as_ref());
     surfaces
         .chain(emissions.map(|emission| &emission.radiance))
-        .chain(lights)
+        .chain(scene.lights.iter().filter_map(Light::spectrum))
         .chain(&scene.environment)
 }
 
-/// Light that paths from the camera can never find: point or directional light that reaches a
-/// surface, or the camera, by way of a mirror or through glass.
+/// Light that paths from the camera can never find: that of lights without a surface which reaches
+/// a surface, or the camera, by way of a mirror or through glass.
 pub fn left_out(scene: &Scene) -> Vec<String> {
-    let specular = worn(scene).any(|material| material.surface.kind.is_delta());
-    if !specular {
+    if !materials(scene).any(|material| material.surface.kind.is_delta()) {
         return Vec::new();
     }
-    scene
-        .lights
-        .iter()
-        .enumerate()
-        .map(|(i, light)| {
-            let kind = match light {
-                Light::Point { .. } => "point",
-                Light::Directional { .. } => "directional",
-            };
-            format!("{kind} light {i} by way of mirrors and glass")
-        })
+    let lights = scene.lights.iter().enumerate();
+    lights
+        .map(|(i, light)| format!("{} {i} by way of mirrors and glass", light.kind.name()))
         .collect()
 }

@@ -3,21 +3,18 @@
 use std::collections::BTreeMap;
 
 use super::bounds::{Blur, GAP_SHARE, PIXEL_SHARE};
-use super::choose::{Doubt, Precision, PrecisionReason};
-use super::{Plan, Tables};
+use super::choose::Precision;
+use super::{Plan, of_model};
 use crate::film::pixels::Pixels;
-use crate::integrate::model::Model;
 use crate::integrate::needs::Needs;
-use crate::light::LightShape;
 use crate::math::lanes::Scalar;
 use crate::sample::replicates::Replicates;
-use crate::scene::{Object, Scene, Shape};
-use crate::shape::lanes::implicit::LaneImplicit;
+use crate::scene::{Lens, Object, Scene, Shape};
 
 /// As many names as a line lists.
 const LISTED: usize = 6;
 
-/// What the scene holds, what it needs and what is done about it, line by line.
+/// What the scene holds, what the loop needs for it, and what was chosen and why, line by line.
 pub fn explain(scene: &Scene, plan: &Plan) -> Vec<String> {
     let mut lines = vec![picture(scene), objects(scene), camera(scene, plan.needs())];
     lines.extend(lights(scene, plan));
@@ -29,12 +26,11 @@ pub fn explain(scene: &Scene, plan: &Plan) -> Vec<String> {
     lines.push(sampler(scene, plan));
     lines.push(depth(scene));
     lines.push(memory(scene, plan));
-    let carried = plan.left_out.iter();
-    lines.extend(
-        carried.map(|light| {
-            format!("light left out: {light}, which paths from the camera cannot carry")
-        }),
-    );
+    for light in &plan.left_out {
+        lines.push(format!(
+            "light left out: {light}, which paths from the camera cannot carry"
+        ));
+    }
     lines
 }
 
@@ -42,10 +38,9 @@ fn picture(scene: &Scene) -> String {
     let image = &scene.image;
     let panel = scene.panel.as_ref();
     let panel = panel.map_or_else(String::new, |name| format!(", panel {name}"));
-    format!(
-        "{}{panel}: {} × {} pixels, {} camera paths each",
-        scene.source.path, image.size[0], image.size[1], image.spp
-    )
+    let ([width, height], spp) = (image.size, image.spp);
+    let path = &scene.source.path;
+    format!("{path}{panel}: {width} × {height} pixels, {spp} camera paths each")
 }
 
 /// How often each word occurs, the words in alphabetical order.
@@ -54,10 +49,8 @@ fn counted(words: impl Iterator<Item = String>) -> String {
     for word in words {
         *counts.entry(word).or_default() += 1;
     }
-    let counts: Vec<String> = counts
-        .into_iter()
-        .map(|(word, count)| format!("{count} {word}"))
-        .collect();
+    let counts = counts.into_iter();
+    let counts: Vec<String> = counts.map(|(word, n)| format!("{n} {word}")).collect();
     counts.join(", ")
 }
 
@@ -65,13 +58,13 @@ fn objects(scene: &Scene) -> String {
     if scene.objects.is_empty() {
         return "objects: none".to_owned();
     }
-    let dressed = scene.objects.iter().map(|object| {
-        let material = &scene.materials[object.value.material].value;
+    let objects = scene.objects.iter().map(|object| {
+        let material = scene.material_of(&object.value);
         let emits = material.emission.as_ref().map_or("", |_| ", emitting");
-        let dress = format!("{}{emits}", material.surface.words());
-        format!("{} ({dress})", shape_kind(&object.value))
+        let shape = shape_kind(&object.value);
+        format!("{shape} ({}{emits})", material.surface.words())
     });
-    format!("objects: {}", counted(dressed))
+    format!("objects: {}", counted(objects))
 }
 
 fn shape_kind(object: &Object) -> String {
@@ -89,17 +82,16 @@ fn shape_kind(object: &Object) -> String {
 }
 
 fn camera(scene: &Scene, needs: Needs) -> String {
-    match (&scene.camera.lens, needs.lens) {
-        (Some(lens), _) => format!(
-            "camera: a lens of radius {}, sharp at distance {}",
-            lens.radius, lens.focus
-        ),
+    match (scene.camera.lens, needs.lens) {
+        (Some(Lens { radius, focus }), _) => {
+            format!("camera: a lens of radius {radius}, sharp at distance {focus}")
+        }
         (None, true) => "camera: no lens, yet its numbers are drawn".to_owned(),
         (None, false) => "camera: no lens, whose two numbers are not drawn".to_owned(),
     }
 }
 
-/// A light of the tables: its object, how it is sampled, and how often.
+/// A sampled light: its object if it has one, what it is called else, how it is sampled, and how often.
 struct Sampled {
     object: u32,
     kind: &'static str,
@@ -107,37 +99,16 @@ struct Sampled {
     probability: f64,
 }
 
-fn sampled<T: Scalar>(model: &Model<T>) -> Vec<Sampled> {
-    let lights = model.lights.iter().map(|light| Sampled {
-        object: light.object,
-        kind: match light.shape {
-            LightShape::Point(_) => "point light",
-            LightShape::Directional(_) => "directional light",
-            _ => "surface",
-        },
-        how: strategy(&light.shape),
-        probability: light.probability.to_f64(),
-    });
-    lights.collect()
-}
-
-fn strategy<T>(shape: &LightShape<T>) -> &'static str {
-    match shape {
-        LightShape::Rectangle(_) => "by solid angle near, by area far",
-        LightShape::Disk(_) | LightShape::Parallelogram(_) => "by area",
-        LightShape::Sphere(_) => "by the solid angle of its cone from outside, by area inside",
-        LightShape::Cube(_) => "by the area of its visible faces",
-        LightShape::Cylinder(_) => "by the size of its visible parts",
-        LightShape::Mapped(_) => "as the round shape that it is an image of",
-        LightShape::Point(_) | LightShape::Directional(_) => "by its one direction",
-    }
-}
-
 fn lights(scene: &Scene, plan: &Plan) -> Vec<String> {
-    let sampled = match &plan.tables {
-        Tables::Single(tables) => sampled(&tables.0),
-        Tables::Double(tables) => sampled(&tables.0),
-    };
+    let sampled: Vec<Sampled> = of_model!(&plan.tables, model => {
+        let lights = model.lights.iter().map(|light| Sampled {
+            object: light.object,
+            kind: light.shape.name(),
+            how: light.shape.strategy(),
+            probability: light.probability.to_f64(),
+        });
+        lights.collect()
+    });
     let mut by_strategy = BTreeMap::<&str, Vec<String>>::new();
     for light in &sampled {
         let object = scene.objects.get(light.object as usize);
@@ -146,8 +117,8 @@ fn lights(scene: &Scene, plan: &Plan) -> Vec<String> {
         let names = by_strategy.entry(light.how).or_default();
         names.push(format!("{name} ({share:.0} %)"));
     }
-    let mut lines: Vec<String> = by_strategy
-        .iter()
+    let lines = by_strategy.iter();
+    let mut lines: Vec<String> = lines
         .map(|(how, names)| format!("lights sampled {how}: {}", listed(names)))
         .collect();
     let found = found_only(scene, &sampled);
@@ -164,10 +135,7 @@ fn lights(scene: &Scene, plan: &Plan) -> Vec<String> {
 /// What emits and is not sampled.
 fn found_only(scene: &Scene, sampled: &[Sampled]) -> Vec<String> {
     let emitting = scene.objects.iter().enumerate().filter(|(index, object)| {
-        let emits = scene.materials[object.value.material]
-            .value
-            .emission
-            .is_some();
+        let emits = scene.material_of(&object.value).emission.is_some();
         emits && !sampled.iter().any(|light| light.object as usize == *index)
     });
     let mut found: Vec<String> = emitting.map(|(_, object)| object.name.clone()).collect();
@@ -204,23 +172,15 @@ fn omitted(plan: &Plan) -> Option<String> {
     if plan.choices.full {
         return Some("left out of the loop: nothing, as asked for".to_owned());
     }
-    let names = named(plan.needs(), false);
-    let text = || {
-        format!(
-            "left out of the loop, as nothing here needs it: {}",
-            names.join(", ")
-        )
-    };
-    (!names.is_empty()).then(text)
+    let names = named(plan.needs(), false).join(", ");
+    (!names.is_empty()).then(|| format!("left out of the loop, as nothing here needs it: {names}"))
 }
 
 fn wavelengths(scene: &Scene, plan: &Plan) -> String {
     let count = plan.choices.wavelengths;
-    let disperses = scene.objects.iter().filter(|object| {
-        let material = &scene.materials[object.value.material].value;
-        material.surface.disperses()
-    });
-    let names: Vec<String> = disperses.map(|object| object.name.clone()).collect();
+    let objects = scene.objects.iter();
+    let disperse = objects.filter(|o| scene.material_of(&o.value).surface.disperses());
+    let names: Vec<String> = disperse.map(|object| object.name.clone()).collect();
     if names.is_empty() {
         format!("wavelengths: {count} a path; nothing disperses, so all live to the end")
     } else {
@@ -232,28 +192,25 @@ fn wavelengths(scene: &Scene, plan: &Plan) -> String {
 }
 
 fn precision(plan: &Plan) -> String {
-    let name = match plan.choices.precision {
-        Precision::Single => "single (f32)",
-        Precision::Double => "double (f64)",
+    let choices = &plan.choices;
+    let (name, verdict) = match choices.precision {
+        Precision::Single => ("single (f32)", "suffices"),
+        Precision::Double => ("double (f64)", "because single does not suffice"),
     };
-    let blur = match plan.choices.precision_reason {
-        PrecisionReason::Asked { .. } => {
-            let doubt = doubt(plan).map_or_else(String::new, |doubt| format!("; {doubt}"));
-            return format!("precision: {name}, as asked for{doubt}");
-        }
-        PrecisionReason::Implicit => {
-            return format!(
-                "precision: {name}: hits on implicit surfaces are proved in double, and rays leave \
-                 from where they are"
-            );
-        }
-        PrecisionReason::Measured(blur) => blur,
-    };
-    let verdict = match plan.choices.precision {
-        Precision::Single => "suffices",
-        Precision::Double => "because single does not suffice",
-    };
-    format!("precision: {name} {verdict}: in single, {}", bound(blur))
+    if choices.asked {
+        let doubt = doubt(plan).map_or_else(String::new, |doubt| format!("; {doubt}"));
+        return format!("precision: {name}, as asked for{doubt}");
+    }
+    if choices.implicit {
+        return format!(
+            "precision: {name}: hits on implicit surfaces are proved in double, and rays leave from \
+             where they are"
+        );
+    }
+    format!(
+        "precision: {name} {verdict}: in single, {}",
+        bound(choices.blur)
+    )
 }
 
 /// How far off positions may be in single precision.
@@ -276,53 +233,47 @@ fn bound(blur: Blur) -> String {
 
 /// What speaks against the precision that was asked for, if anything does.
 pub fn doubt(plan: &Plan) -> Option<String> {
-    let PrecisionReason::Asked { doubt: Some(doubt) } = plan.choices.precision_reason else {
+    let choices = &plan.choices;
+    let single = choices.asked && choices.precision == Precision::Single;
+    if !single || choices.single_suffices() {
         return None;
-    };
-    Some(match doubt {
-        Doubt::Blur(blur) => format!(
+    }
+    if !choices.implicit {
+        return Some(format!(
             "double would have been taken, because in single {}",
-            bound(blur)
-        ),
-        Doubt::Implicit(Blur { position, .. }) => format!(
-            "double would have been taken: hits on implicit surfaces are proved in double and then \
-             rounded to single, which puts them off by up to {position:.1e}, so that sheets closer than {:.1e} \
-             may be taken one for the other",
-            position / GAP_SHARE
-        ),
-    })
+            bound(choices.blur)
+        ));
+    }
+    let position = choices.blur.position;
+    Some(format!(
+        "double would have been taken: hits on implicit surfaces are proved in double and then \
+         rounded to single, which puts them off by up to {position:.1e}, so that sheets closer than {:.1e} \
+         may be taken one for the other",
+        position / GAP_SHARE
+    ))
 }
 
 fn intersection(scene: &Scene, plan: &Plan) -> String {
-    let (hierarchy, occluders) = match &plan.tables {
-        Tables::Single(tables) => (
-            tables.0.hierarchy.is_some(),
-            tables.0.occluders.objects.len(),
-        ),
-        Tables::Double(tables) => (
-            tables.0.hierarchy.is_some(),
-            tables.0.occluders.objects.len(),
-        ),
-    };
+    let (hierarchy, occluders) = of_model!(&plan.tables, model => {
+        (model.hierarchy.is_some(), model.occluders.objects.len())
+    });
     let count = scene.objects.len();
-    let mut text = format!(
-        "intersection: {}; what lanes leave undecided goes to the exact ladder",
-        if hierarchy {
-            format!("a hierarchy of boxes over {count} objects")
-        } else {
-            let noun = if count == 1 { "object" } else { "objects" };
-            format!("each ray asks a list of {count} {noun}")
-        }
-    );
+    let way = match (hierarchy, count) {
+        (true, _) => format!("a hierarchy of boxes over {count} objects"),
+        (false, 1) => "each ray asks a list of 1 object".to_owned(),
+        (false, _) => format!("each ray asks a list of {count} objects"),
+    };
+    let mut text =
+        format!("intersection: {way}; what lanes leave undecided goes to the exact ladder");
     if occluders < count {
         text.push_str(&format!(
             "; shadow rays ask {occluders}, as the others can hide no light"
         ));
     }
-    let finders = match &plan.tables {
-        Tables::Single(tables) => finders(&tables.0.implicits),
-        Tables::Double(tables) => finders(&tables.0.implicits),
-    };
+    let finders: Vec<&str> = of_model!(&plan.tables, model => {
+        let implicits = model.implicits.iter();
+        implicits.map(|(_, implicit)| implicit.finder().name()).collect()
+    });
     for (name, how) in FINDERS {
         let count = finders.iter().filter(|finder| **finder == name).count();
         if count > 0 {
@@ -349,12 +300,6 @@ const FINDERS: [(&str, &str); 4] = [
     ("sign-change", "equal steps and bisection, not certified"),
 ];
 
-/// The finder of each implicit surface.
-fn finders<T: Scalar>(implicits: &[(u32, LaneImplicit<T>)]) -> Vec<&'static str> {
-    let name = |(_, implicit): &(u32, LaneImplicit<T>)| implicit.finder().name();
-    implicits.iter().map(name).collect()
-}
-
 fn sampler(scene: &Scene, plan: &Plan) -> String {
     let name = scene.image.sampler.words();
     let replicates = plan.choices.replicates;
@@ -372,26 +317,17 @@ fn sampler(scene: &Scene, plan: &Plan) -> String {
 }
 
 fn depth(scene: &Scene) -> String {
-    match scene.image.max_depth {
-        Some(depth) => {
-            format!("paths: at most {depth} segments; some go on to measure what that cuts off")
-        }
-        None => "paths: of any length; Russian roulette ends them without bias".to_owned(),
-    }
+    scene.image.max_depth.map_or_else(
+        || "paths: of any length; Russian roulette ends them without bias".to_owned(),
+        |n| format!("paths: at most {n} segments; some go on to measure what that cuts off"),
+    )
 }
 
 fn memory(scene: &Scene, plan: &Plan) -> String {
     let [width, height] = scene.image.size.map(u64::from);
     let pixel = Pixels::bytes_per_pixel(plan.choices.replicates, scene.image.spp);
     let sums = width * height * pixel as u64;
-    let spectra = match &plan.tables {
-        Tables::Single(tables) => tables.0.spectra.bytes(),
-        Tables::Double(tables) => tables.0.spectra.bytes(),
-    };
-    let mebibytes = |bytes: f64| bytes / f64::from(1 << 20);
-    format!(
-        "memory: {:.1} MiB of sums, {:.1} MiB of spectra",
-        mebibytes(sums as f64),
-        mebibytes(spectra as f64)
-    )
+    let spectra = of_model!(&plan.tables, model => model.spectra.bytes());
+    let [sums, spectra] = [sums as f64, spectra as f64].map(|bytes| bytes / f64::from(1 << 20));
+    format!("memory: {sums:.1} MiB of sums, {spectra:.1} MiB of spectra")
 }

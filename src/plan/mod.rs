@@ -1,8 +1,8 @@
 //! The plan: what this scene needs, decided once, built once, and explained in words.
 //!
-//! [`choose`] turns what [`contents`] and [`bounds`] say of the scene, and the user's wishes, into
-//! decisions, in one table; [`build`] makes the flat tables of the loop, and with them the list of what
-//! can happen there; [`explain`] says why.
+//! [`choose`] decides by what [`contents`] and [`bounds`] find in the scene and by what the user asks
+//! for; [`build`] makes the flat tables of the loop, and with them the list of what can happen there;
+//! [`explain`] says why.
 
 pub mod bounds;
 pub mod build;
@@ -30,6 +30,23 @@ pub struct Plan {
     /// Names of lights that unidirectional paths cannot carry everywhere, with the reason.
     pub left_out: Vec<String>,
 }
+
+/// Evaluates an expression about the model, in whichever precision it is.
+macro_rules! of_model {
+    ($tables:expr, $model:ident => $do:expr) => {
+        match $tables {
+            $crate::plan::Tables::Single(tables) => {
+                let $model = &tables.0;
+                $do
+            }
+            $crate::plan::Tables::Double(tables) => {
+                let $model = &tables.0;
+                $do
+            }
+        }
+    };
+}
+use of_model;
 
 /// Tables of the loop in one precision.
 #[derive(Debug)]
@@ -85,10 +102,7 @@ impl Plan {
 
     /// What can happen in the loop.
     pub fn needs(&self) -> Needs {
-        match &self.tables {
-            Tables::Single(scene) => scene.0.needs,
-            Tables::Double(scene) => scene.0.needs,
-        }
+        of_model!(&self.tables, model => model.needs)
     }
 
     /// Takes other random numbers: the plan is then that of the scene with this seed.

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::bounds::about_camera;
 use crate::math::affine::Affine;
-use crate::scene::{Light, Scene, Shape};
+use crate::scene::{Place, Scene, Shape};
 use crate::shape::ShapeKind;
 
 /// Points relative to a plane: the range of their signed distances.
@@ -27,7 +27,7 @@ pub fn occluders(scene: &Scene, lit: &[u32], roundoff: f64) -> Vec<u32> {
         .map(|o| about_camera(scene, &o.value))
         .collect();
     let is_end = |k: usize| {
-        let material = &scene.materials[scene.objects[k].value.material].value;
+        let material = scene.material_of(&scene.objects[k].value);
         material.surface.kind.is_spread() || lit.contains(&(k as u32))
     };
     let hides = |k: usize| {
@@ -42,10 +42,12 @@ pub fn occluders(scene: &Scene, lit: &[u32], roundoff: f64) -> Vec<u32> {
         };
         let ends = (0..placed.len()).filter(|&i| i != k && is_end(i));
         let objects = ends.map(|i| range(&scene.objects[i].value.shape, &placed[i], normal));
-        let lights = scene.lights.iter().map(|light| match light {
-            Light::Point { at, .. } => [normal.dot(*at - scene.camera.from); 2],
+        let places = scene.lights.iter();
+        let places = places.filter_map(|light| light.place(scene.camera.from));
+        let lights = places.map(|place| match place {
+            Place::At(at) => [normal.dot(at); 2],
             // From any end, the ray leaves towards where the light comes from.
-            Light::Directional { direction, .. } => match normal.dot(-*direction) {
+            Place::Towards(direction) => match normal.dot(direction) {
                 0.0 => [height; 2],
                 away if away > 0.0 => [height, f64::INFINITY],
                 _ => [f64::NEG_INFINITY, height],

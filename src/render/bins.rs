@@ -12,7 +12,8 @@ use std::sync::Arc;
 use crate::film::pixels::Estimate;
 use crate::math::lanes::Scalar;
 use crate::sample::replicates::Replicates;
-use crate::spectrum::grid::{CELLS, LONGEST, SHORTEST, WavelengthGrid};
+use crate::spectrum::grid::{CELLS, WavelengthGrid};
+use crate::spectrum::{NM_MAX, NM_MIN};
 
 /// Neighbouring bins of equal width.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,21 +34,15 @@ pub struct Shares {
     shares: Vec<(u32, f64)>,
 }
 
-/// Why bins cannot be had.
+/// Why there can be no such bins.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum BinError {
-    /// A bin reaches out of the wavelengths that paths carry.
-    #[error("the bin at {centre} nm reaches out of {SHORTEST} nm to {LONGEST} nm")]
-    Outside {
-        /// Its middle, nm.
-        centre: f64,
-    },
-    /// Not positive, not finite, or more bins than there are cells.
-    #[error("the bins' width of {width} nm is not one of at most {CELLS} bins")]
-    Width {
-        /// What was asked for, nm.
-        width: f64,
-    },
+    /// The bin about this wavelength in nm reaches out of the wavelengths that paths carry.
+    #[error("the bin at {0} nm reaches out of {NM_MIN} nm to {NM_MAX} nm")]
+    Outside(f64),
+    /// A width in nm that is not positive, not finite, or makes more bins than there are cells.
+    #[error("the bins' width of {0} nm is not one of at most {CELLS} bins")]
+    Width(f64),
 }
 
 impl BinGrid {
@@ -60,15 +55,15 @@ impl BinGrid {
         // Rounded decimals such as (0.7 − 0.4)/0.1 may fall just short of a whole number.
         let steps = ((to - from) / step + 1e-9).floor();
         if !(step > 0.0 && steps >= 0.0 && steps < CELLS as f64) {
-            return Err(BinError::Width { width: step });
+            return Err(BinError::Width(step));
         }
         let centres: Vec<f64> = (0..=steps as u32)
             .map(|i| from + f64::from(i) * step)
             .collect();
         let half = step / 2.0;
-        let inside = |c: f64| c - half >= SHORTEST && c + half <= LONGEST;
+        let inside = |c: f64| c - half >= NM_MIN && c + half <= NM_MAX;
         if let Some(&centre) = centres.iter().find(|&&c| !inside(c)) {
-            return Err(BinError::Outside { centre });
+            return Err(BinError::Outside(centre));
         }
         Ok(Self {
             centres,
@@ -81,7 +76,7 @@ impl BinGrid {
         &self.centres
     }
 
-    /// How they share the cells of a grid.
+    /// How the bins share the cells of a grid.
     pub fn shares(&self, grid: &WavelengthGrid) -> Shares {
         let half = self.width / 2.0;
         let mut starts = vec![0];
@@ -101,12 +96,6 @@ impl BinGrid {
             starts,
             shares,
         }
-    }
-}
-
-impl Shares {
-    fn of(&self, cell: usize) -> &[(u32, f64)] {
-        &self.shares[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 }
 
@@ -152,14 +141,16 @@ impl Bins {
         let sums = &mut self.sums[place * count..][..count];
         for (i, radiance) in radiance.iter().enumerate() {
             let radiance = radiance.to_f64() / C as f64;
-            for (bin, share) in self.shares.of(i * (CELLS / C) + row as usize) {
+            let cell = i * (CELLS / C) + row as usize;
+            let [start, end] = [cell, cell + 1].map(|cell| self.shares.starts[cell] as usize);
+            for (bin, share) in &self.shares.shares[start..end] {
                 sums[*bin as usize][0] += radiance * share;
             }
         }
     }
 
-    /// Radiance of a pixel in a bin, W·m⁻²·sr⁻¹·nm⁻¹; its replicates have as many samples as `counts`
-    /// says.
+    /// Radiance of a pixel in a bin, W·m⁻²·sr⁻¹·nm⁻¹; `counts` are the numbers of samples of the
+    /// replicates.
     pub fn estimate(&self, pixel: usize, bin: usize, counts: &[f64]) -> Estimate<1> {
         let count = self.shares.bins;
         let sums = &self.sums[pixel * self.slots * count..][..self.slots * count];

@@ -1,4 +1,4 @@
-//! What a picture is made of: a scene, its plan, and how much of it is wanted.
+//! A picture to be rendered: a scene, its plan, and what is wanted of it.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use super::goal::{Chosen, Goal, choose};
 use super::layers::Layer;
 use super::memory::{TooLarge, available};
 use super::seeds::seed;
-use super::session::{Progress, Rendered, Request, Unwatched, render, render_binned};
+use super::session::{Progress, Rendered, Request, Unwatched, render};
 use super::tile::{Outside, Window};
 use crate::film::pixels::{Estimate, Pixels};
 use crate::math::instructions::Instructions;
@@ -15,11 +15,11 @@ use crate::plan::explain::explain;
 use crate::plan::{Plan, PlanError};
 use crate::scene::Scene;
 
-/// Samples a pixel at most: as many as the samplers' points.
+/// Most samples a pixel: as many as the samplers have points.
 pub const MOST_SAMPLES: u32 = 1 << 24;
 
-/// A picture to be made of a scene: all of it, until the scene's samples are done, unless the
-/// methods say otherwise.
+/// A picture to be made of a scene: all of it, until the scene's samples are done, unless fields
+/// and methods say otherwise.
 ///
 /// [`run`](Self::run) renders; [`picture`](Self::picture) makes channels and attributes of that.
 #[derive(Debug)]
@@ -48,7 +48,7 @@ impl Render {
         Ok(Self::planned(scene, plan))
     }
 
-    /// Takes a plan that was made of this very scene.
+    /// Takes a plan that was made of the same scene.
     pub fn planned(scene: Scene, plan: Plan) -> Self {
         Self {
             scene,
@@ -75,38 +75,17 @@ impl Render {
         Ok(self)
     }
 
-    /// Ends between passes after this wall-clock time.
-    #[must_use]
-    pub fn for_time(mut self, time: Duration) -> Self {
-        self.time = Some(time);
-        self
-    }
-
-    /// Adds layers about the first surface that each pixel shows.
-    #[must_use]
-    pub fn with_layers(mut self, layers: impl IntoIterator<Item = Layer>) -> Self {
-        self.layers.extend(layers);
-        self
-    }
-
-    /// Adds spectral radiance in bins.
-    #[must_use]
-    pub fn with_spectrum(mut self, bins: BinGrid) -> Self {
-        self.spectral = Some(bins);
-        self
-    }
-
-    /// The scene.
+    /// The scene as it is rendered.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// What is done about it.
+    /// How the scene is rendered.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
 
-    /// What is done about the scene, and why, line by line.
+    /// How the scene is rendered, and why, line by line.
     pub fn explain(&self) -> Vec<String> {
         explain(&self.scene, &self.plan)
     }
@@ -121,7 +100,7 @@ impl Render {
         self.goal
     }
 
-    /// The pixels wanted.
+    /// The pixels wanted: the crop, or the whole picture.
     pub fn window(&self) -> Window {
         self.crop
             .unwrap_or_else(|| Window::whole(self.scene.image.size))
@@ -139,22 +118,16 @@ impl Render {
         self.run_watched(&mut Unwatched)
     }
 
-    /// Renders and tells of it after each pass.
+    /// As [`run`](Self::run), with a call of `progress` after each pass.
     pub fn run_watched(&self, progress: &mut dyn Progress) -> Rendered {
-        let request = self.request(self.scene.image.spp, self.time);
-        match &self.spectral {
-            Some(grid) => render_binned(&self.plan, &request, grid, progress),
-            None => render(&self.plan, &request, progress),
-        }
-    }
-
-    fn request(&self, samples: u32, time: Option<Duration>) -> Request {
-        Request {
+        let request = Request {
             window: self.window(),
-            samples,
-            time,
+            samples: self.scene.image.spp,
+            time: self.time,
             instructions: self.instructions,
-        }
+            bins: self.spectral.as_ref(),
+        };
+        render(&self.plan, &request, progress)
     }
 
     /// Checks that the picture fits into memory.
@@ -169,15 +142,13 @@ impl Render {
         Ok(())
     }
 
-    /// Bytes that it takes at the end: the sums of each pixel, the estimate made of them, and what
-    /// goes to the file, of which the writer makes a copy.
+    /// Bytes of the finished picture: the sums of each pixel, the estimate made of them, and the
+    /// channels of the file, of which the writer makes a copy.
     fn memory(&self) -> u64 {
         // R, G, B, their standard errors, and the count of samples.
         const CHANNELS: usize = 7;
-        let bins = self
-            .spectral
-            .as_ref()
-            .map_or(0, |grid| grid.centres().len());
+        let bins = self.spectral.as_ref();
+        let bins = bins.map_or(0, |grid| grid.centres().len());
         let (replicates, samples) = (self.plan.choices.replicates, self.scene.image.spp);
         let sums = Pixels::bytes_per_pixel(replicates, samples)
             + bins * Bins::bytes_per_pixel(replicates, samples);
@@ -224,8 +195,8 @@ impl Render {
         failed.map_or(Ok(chosen), Err)
     }
 
-    /// A render of this many samples a pixel with the seed of this pilot; `None` where it was
-    /// stopped.
+    /// Renders this many samples a pixel with the seed of pilot `number`; `None` where `progress`
+    /// stopped it.
     fn pilot(
         &mut self,
         samples: u32,
@@ -238,7 +209,12 @@ impl Render {
         }
         self.plan
             .reseed(seed(self.scene.image.seed, "pilot", number));
-        let rendered = render(&self.plan, &self.request(samples, None), progress);
+        let request = Request {
+            window: self.window(),
+            instructions: self.instructions,
+            ..Request::whole(self.scene.image.size, samples)
+        };
+        let rendered = render(&self.plan, &request, progress);
         Ok((rendered.samples == samples).then_some(rendered))
     }
 }

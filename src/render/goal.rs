@@ -1,4 +1,4 @@
-//! How many samples a wanted error takes, without letting the answer bend the picture.
+//! How many samples a wanted error takes, chosen without bias in the picture.
 //!
 //! A render that stops when its own samples say that it is good stops early where they happen to
 //! agree, and so is biased (D. Kirk and J. Arvo, "Unbiased Sampling Techniques for Image
@@ -8,21 +8,21 @@
 use super::session::Rendered;
 use crate::stats::blocks;
 
-/// What the wanted error is an error of.
+/// The quantity whose error is wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
     /// The mean luminance of the picture.
     Image,
-    /// The mean luminance of its worst block of 8 × 8 pixels.
+    /// The mean luminance of the picture's worst block of 8 × 8 pixels.
     Block,
 }
 
-/// What is wanted.
+/// A wanted error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
-    /// Of what.
+    /// The quantity.
     pub target: Target,
-    /// Standard error over value.
+    /// Standard error of the quantity over its value.
     pub error: f64,
 }
 
@@ -39,10 +39,10 @@ pub struct Chosen {
 
 /// Samples a pixel of the smallest pilot: enough for two replicates of a few points each.
 const FIRST: u32 = 8;
-/// Camera paths of the smallest pilot of a picture: what one path in ten thousand brings is seen by
-/// it but for one case in 700 (0.9999^65536), and it takes milliseconds.
+/// Camera paths of the smallest pilot of a picture, which takes milliseconds: light that one path in
+/// ten thousand brings is missed in one case of 700 (0.9999^65536).
 const PATHS: u32 = 1 << 16;
-/// How much larger the next pilot is at most.
+/// Samples of a pilot over those of the one before, at most.
 const GROWTH: f64 = 4.0;
 
 impl Target {
@@ -72,17 +72,17 @@ impl Target {
 const FREEDOM: f64 = 16.0;
 /// Renders of a pilot at most: a variance that rare paths bear would go on without end.
 const RENDERS: u32 = 16;
-/// A pilot will do that is so much smaller than it was meant to be.
+/// A pilot is large enough if it is smaller than it was meant to be by no more than this factor.
 const SLACK: f64 = 1.5;
 /// Slopes of the standard error over samples: independent samples have −1/2, and no sampler here
 /// falls faster than −1 for long (smooth integrands, strata: Mitchell 1996).
 const SLOPES: [f64; 2] = [-1.0, -0.5];
 
-/// Standard error over mean of what is aimed at; NaN where there is none.
+/// Standard error over mean of the quantity in a finished render; NaN where it is not known.
 pub fn reached(rendered: &Rendered, target: Target) -> f64 {
     let mut pilot = Pilot::default();
     pilot.add(rendered, target);
-    pilot.worst().square.sqrt()
+    pilot.worst()[0].sqrt()
 }
 
 /// Chooses the samples a pixel of a picture of so many pixels, at most `most`. `pilot` renders with
@@ -139,34 +139,21 @@ fn times(wanted: f64, (samples, error): (u32, f64), before: Option<(u32, f64)>) 
     libm::pow(wanted / error, 1.0 / slope)
 }
 
-/// What renders of a pilot say of one place.
+/// Sums over the renders of a pilot for one place: the whole picture or a block.
 #[derive(Debug, Clone, Copy, Default)]
 struct Place {
     /// Sum of the pixels' luminances.
     total: f64,
     /// Sum of their variances.
     variance: f64,
-    /// Sum of the squares of these.
+    /// Sum of the squares of the variances.
     square: f64,
 }
 
-/// A squared relative standard error, NaN where there is none, and its degrees of freedom (see
-/// [`Estimate::mean_of`](crate::stats::Estimate::mean_of)).
-#[derive(Debug, Clone, Copy)]
-struct Relative {
-    square: f64,
-    freedom: f64,
-}
+/// The squared relative error, and its degrees of freedom, of a value that is known exactly.
+const EXACT: [f64; 2] = [0.0, f64::INFINITY];
 
-impl Relative {
-    /// Of what is known exactly.
-    const NONE: Self = Self {
-        square: 0.0,
-        freedom: f64::INFINITY,
-    };
-}
-
-/// Renders of equally many samples, joined: one place, or one a block.
+/// Joined renders of equally many samples: one place for the picture, or one for each block.
 #[derive(Debug, Default)]
 struct Pilot {
     places: Vec<Place>,
@@ -179,13 +166,10 @@ impl Pilot {
     fn add(&mut self, rendered: &Rendered, target: Target) {
         let pixels = rendered.xyz();
         let window = rendered.window;
+        let [width, height] = [window.width(), window.height()].map(|n| n as usize);
         let blocks = match target {
             Target::Image => vec![(0..pixels.len()).collect()],
-            Target::Block => blocks::members(
-                window.width() as usize,
-                window.height() as usize,
-                blocks::EDGE,
-            ),
+            Target::Block => blocks::members(width, height, blocks::EDGE),
         };
         self.places.resize(blocks.len(), Place::default());
         for (place, block) in self.places.iter_mut().zip(blocks) {
@@ -200,39 +184,37 @@ impl Pilot {
         self.freedom = f64::from(rendered.replicates()) - 1.0;
     }
 
-    /// The place whose error is largest.
-    fn worst(&self) -> Relative {
+    /// The largest squared relative standard error of a place, NaN where one has none, and its degrees
+    /// of freedom (see [`Estimate::mean_of`](crate::stats::Estimate::mean_of)).
+    fn worst(&self) -> [f64; 2] {
         let places = self.places.iter().map(|place| self.relative(place));
-        places.fold(Relative::NONE, |a, b| {
-            if a.square >= b.square || a.square.is_nan() {
-                a
-            } else {
-                b
-            }
-        })
+        places.fold(
+            EXACT,
+            |a, b| {
+                if a[0] >= b[0] || a[0].is_nan() { a } else { b }
+            },
+        )
     }
 
-    /// Of one render's place; a black one has no error.
-    fn relative(&self, place: &Place) -> Relative {
+    /// The same of one place; one without variance, such as a black one, has no error.
+    fn relative(&self, place: &Place) -> [f64; 2] {
         if place.variance == 0.0 {
-            return Relative::NONE;
+            return EXACT;
         }
+        let square = f64::from(self.renders) * place.variance / (place.total * place.total);
         let freedom = (self.freedom + 2.0) * place.variance * place.variance / place.square;
-        Relative {
-            square: f64::from(self.renders) * place.variance / (place.total * place.total),
-            freedom: freedom.max(self.freedom),
-        }
+        [square, freedom.max(self.freedom)]
     }
 
     fn is_certain(&self) -> bool {
-        self.renders == RENDERS || self.worst().freedom >= FREEDOM
+        self.renders == RENDERS || self.worst()[1] >= FREEDOM
     }
 
     /// Relative standard error to plan with. Samples in proportion to an estimated variance s² of
     /// k degrees of freedom leave the picture σ²/s² times the wanted one, on average k/(k − 2)
     /// (the mean of an inverse χ²); s² is taken that much larger.
     fn error(&self) -> f64 {
-        let Relative { square, freedom } = self.worst();
+        let [square, freedom] = self.worst();
         let larger = if freedom.is_finite() {
             freedom / (freedom - 2.0).max(1.0)
         } else {

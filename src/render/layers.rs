@@ -1,4 +1,4 @@
-//! Layers of the picture that are asked for.
+//! Optional layers of a picture.
 
 use glam::DVec3;
 
@@ -22,12 +22,12 @@ pub enum Layer {
     Normal,
     /// Index of the object.
     Object,
-    /// Index of its material.
+    /// Index of the object's material.
     Material,
 }
 
 impl Layer {
-    /// All of them, with the names by which they are asked for.
+    /// All layers, with their names on the command line and in messages.
     pub const ALL: [(&str, Self); 4] = [
         ("depth", Self::Depth),
         ("normal", Self::Normal),
@@ -35,7 +35,7 @@ impl Layer {
         ("material", Self::Material),
     ];
 
-    /// Channels that it takes.
+    /// Number of channels.
     pub fn channels(self) -> usize {
         match self {
             Self::Depth | Self::Object | Self::Material => 1,
@@ -84,7 +84,7 @@ pub(super) fn push(
     Ok(())
 }
 
-/// Adds the spectral bins that were asked for.
+/// Adds a channel for each spectral bin.
 pub(super) fn push_spectral(picture: &mut Picture, grid: &BinGrid, rendered: &Rendered) {
     let known = rendered.replicates() > 1;
     let bin = |(index, &nm): (usize, &f64)| {
@@ -95,15 +95,9 @@ pub(super) fn push_spectral(picture: &mut Picture, grid: &BinGrid, rendered: &Re
         };
         Some(Bin {
             nm,
-            sensitivity: Vec::new(),
             values: single(|e| e.mean[0]),
-            standard_errors: if known {
-                single(|e| e.standard_error[0])
-            } else {
-                Vec::new()
-            },
+            standard_errors: known.then(|| single(|e| e.standard_error[0])),
         })
     };
-    let bins = grid.centres().iter().enumerate().filter_map(bin).collect();
-    picture.push_spectral(bins);
+    picture.push_spectral(grid.centres().iter().enumerate().filter_map(bin));
 }

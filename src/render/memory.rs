@@ -1,4 +1,4 @@
-//! How much memory there is, and a picture that takes more.
+//! The memory that is available, and pictures that need more.
 
 /// A picture that does not fit into memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -7,19 +7,16 @@
     needed >> 20, available >> 20
 )]
 pub struct TooLarge {
-    /// Bytes of the render.
+    /// Bytes that the picture needs.
     pub needed: u64,
-    /// Bytes of the machine.
+    /// Bytes that the system can give.
     pub available: u64,
 }
 
-/// Assumed where the system does not tell how much there is: what any machine has.
-const UNKNOWN: u64 = 1 << 32;
-
-/// Bytes that can be had without swapping, as Linux estimates them; what any machine has
-/// elsewhere.
+/// Bytes available without swapping, as Linux estimates them; on other systems 4 GiB, which any
+/// machine has.
 pub fn available() -> u64 {
-    of_linux().unwrap_or(UNKNOWN)
+    of_linux().unwrap_or(1 << 32)
 }
 
 fn of_linux() -> Option<u64> {

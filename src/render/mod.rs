@@ -1,17 +1,15 @@
-//! A render: tiles over threads, passes over the whole image, when to stop, and the picture that
-//! comes of it.
+//! Rendering: tiles over threads, passes over the whole image until it is done, and the picture made
+//! of the sums.
 //!
-//! [`Render`] is the way in: it holds a scene and its plan, chooses samples for a wanted error,
-//! renders, and makes a [`Picture`](crate::film::Picture) with its layers, its standard errors and
-//! all that it takes to make it again. [`trace`] follows single rays, exactly.
+//! [`Render`] holds a scene and its plan, chooses samples for a wanted error, renders, and makes a
+//! [`Picture`](crate::film::Picture) with its layers, its standard errors and everything needed to
+//! render it again. [`trace`] intersects single rays exactly.
 
 pub mod bins;
-pub mod blocks;
 pub mod builder;
 pub mod goal;
 pub mod layers;
 pub mod memory;
-pub mod pass;
 mod picture;
 pub mod replay;
 pub mod seeds;
@@ -22,4 +20,4 @@ pub mod trace;
 pub use crate::math::instructions::Instructions;
 pub use builder::Render;
 pub use replay::replay;
-pub use session::{Progress, Rendered, Request, Unwatched, render, render_binned};
+pub use session::{Progress, Rendered, Request, Unwatched, render};

@@ -1,19 +1,18 @@
-//! From sums to a picture: channels, standard errors, and where it comes from.
+//! From sums to a picture: channels, standard errors and provenance.
 
 use std::fmt::Write as _;
 
 use super::builder::Render;
 use super::layers;
-use super::session::{Rendered, Share};
+use super::session::Rendered;
 use super::trace::Singular;
-use crate::film::provenance::Provenance;
-use crate::film::{Attribute, Channel, Picture, names};
+use crate::film::{Attribute, Channel, Picture, hash, names};
 use crate::integrate::intersect::Rungs;
 use crate::plan::choose::Precision;
 
 impl Render {
     /// The picture of what [`run`](Self::run) has rendered: R, G, B and their standard errors, the
-    /// count of samples, the layers asked for, and all that it takes to make it again.
+    /// count of samples, the layers asked for, and everything needed to render it again.
     ///
     /// # Errors
     /// [`Singular`] where layers are wanted of an object whose matrix has no inverse.
@@ -37,102 +36,108 @@ impl Render {
         if let Some(grid) = &self.spectral {
             layers::push_spectral(&mut picture, grid, rendered);
         }
-        let limited = self.scene().image.max_depth.is_some();
-        let cut_off = limited.then(|| rendered.cut_off());
-        let provenance = self.provenance(rendered, cut_off);
-        picture.attributes.extend(provenance);
-        self.further(&mut picture, rendered, cut_off);
+        picture.attributes.extend(self.provenance(rendered));
         Ok(picture)
     }
 
-    fn provenance(&self, rendered: &Rendered, cut_off: Option<Share>) -> Vec<(String, Attribute)> {
+    /// Everything needed to render the picture again, and what is known about its error.
+    ///
+    /// What does not apply is absent, but an absent limit of the path length is said as the text
+    /// "unlimited"; whole numbers that need more than 31 bits, and the seed always, are decimal text.
+    fn provenance(&self, rendered: &Rendered) -> Vec<(String, Attribute)> {
         let (scene, plan) = (self.scene(), self.plan());
+        let (source, image) = (&scene.source, &scene.image);
+        let text = |value: &str| Some(Attribute::Text(value.to_owned()));
+        let count = |value: u64| Some(Attribute::whole_number(value));
+        let double = |value: f64| Some(Attribute::Double(value));
+        let settings = source
+            .set
+            .iter()
+            .map(|(key, value)| format!("{key}={value}"));
+        let settings = settings.collect::<Vec<_>>().join("\n");
+        let settings = Some(settings).filter(|_| !source.set.is_empty());
+        let strata = rendered.samples < image.spp && image.sampler.needs_count();
+        let planned = strata.then(|| image.spp.to_string());
+        let [width, height] = image.size;
+        let crop = self
+            .crop()
+            .map(|crop| format!("{crop} of {width}x{height}"));
         let error = rendered.mean_luminance().standard_error;
-        let provenance = Provenance {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            scene_path: scene.source.path.clone(),
-            scene_text: scene.source.text.clone(),
-            panel: scene.panel.clone(),
-            seed: scene.image.seed,
-            spp: rendered.samples.into(),
-            sampler: scene.image.sampler.name().to_owned(),
-            replicates: rendered.replicates(),
-            precision: plan.choices.precision.name().to_owned(),
-            wavelengths: plan.choices.wavelengths,
-            plan: self.explain().join("\n"),
-            max_depth: scene.image.max_depth,
-            seconds: rendered.seconds,
-            samples_per_second: rendered.samples_per_second(),
-            nan_count: rendered.not_a_number,
-            standard_error: error.is_finite().then_some(error),
-            energy_cut: cut_off.map(|share| share.value),
-            lights_left_out: plan.left_out.clone(),
+        let depth = image.max_depth;
+        let cut_off = depth.map(|_| rendered.cut_off());
+        let (cut, cut_error) = cut_off.map(|cut| (cut.value, cut.standard_error)).unzip();
+        let depth = depth.map_or(text("unlimited"), |depth| count(depth.into()));
+        // Some readers drop empty texts, and "none" is an answer.
+        let lights = match plan.left_out.join(", ") {
+            lights if lights.is_empty() => "none".to_owned(),
+            lights => lights,
         };
-        provenance.attributes()
-    }
-
-    /// What is known beyond the provenance of every picture.
-    fn further(&self, picture: &mut Picture, rendered: &Rendered, cut_off: Option<Share>) {
-        let scene = self.scene();
-        let mut add = |name: &str, value| picture.attributes.push((name.to_owned(), value));
-        let settings = scene.source.set.iter();
-        let settings: Vec<_> = settings
-            .map(|(key, value)| format!("{key}={value}"))
-            .collect();
-        if !settings.is_empty() {
-            add("settings", Attribute::Text(settings.join("\n")));
-        }
-        if let Some(crop) = self.crop() {
-            let [width, height] = scene.image.size;
-            add(
-                "crop",
-                Attribute::Text(format!("{crop} of {width}x{height}")),
-            );
-        }
-        let instructions = self.instructions.name().to_owned();
-        add("instructions", Attribute::Text(instructions));
-        let rungs = rungs(&rendered.rungs, self.plan().choices.precision);
-        add("rungs", Attribute::Text(rungs));
-        let planned = scene.image.spp;
-        if rendered.samples < planned && scene.image.sampler.needs_count() {
-            add("sppPlanned", Attribute::Text(planned.to_string()));
-        }
-        if let Some(goal) = self.goal() {
-            add("targetError", Attribute::Double(goal.error));
-        }
-        if let Some(share) = cut_off {
-            let error = Attribute::Double(share.standard_error);
-            add("energyCutStandardError", error);
-        }
+        let rungs = rungs(&rendered.rungs, plan.choices.precision);
+        let attributes = [
+            ("etalonVersion", text(env!("CARGO_PKG_VERSION"))),
+            ("sceneFile", text(&source.path)),
+            ("sceneHash", text(&hash(&source.text))),
+            ("sceneText", text(&source.text)),
+            ("panel", scene.panel.as_deref().and_then(text)),
+            ("settings", settings.as_deref().and_then(text)),
+            ("seed", text(&image.seed.to_string())),
+            ("spp", count(rendered.samples.into())),
+            ("sppPlanned", planned.as_deref().and_then(text)),
+            ("sampler", text(image.sampler.name())),
+            ("replicates", count(rendered.replicates().into())),
+            ("precision", text(plan.choices.precision.name())),
+            ("wavelengths", count(plan.choices.wavelengths.into())),
+            ("instructions", text(self.instructions.name())),
+            ("plan", text(&self.explain().join("\n"))),
+            ("rungs", text(&rungs)),
+            ("maxDepth", depth),
+            ("crop", crop.as_deref().and_then(text)),
+            (
+                "targetError",
+                self.goal().and_then(|goal| double(goal.error)),
+            ),
+            ("seconds", double(rendered.seconds)),
+            ("samplesPerSecond", double(rendered.samples_per_second())),
+            ("nanCount", count(rendered.not_a_number)),
+            ("standardError", double(error).filter(|_| error.is_finite())),
+            ("energyCutByMaxDepth", cut.and_then(double)),
+            ("energyCutStandardError", cut_error.and_then(double)),
+            ("lightsLeftOut", text(&lights)),
+        ];
+        let known = |(name, value): (&str, Option<_>)| Some((name.to_owned(), value?));
+        attributes.into_iter().filter_map(known).collect()
     }
 }
 
-/// Who has decided the rays, as shares.
+/// Shares of rays and questions that each arithmetic has decided.
 fn rungs(rungs: &Rungs, precision: Precision) -> String {
     let share = |part: u64, whole: u64| part as f64 / whole.max(1) as f64;
+    let decided = |parts: [u64; 3], whole: u64| {
+        let [double, double_double, exact] = parts.map(|part| share(part, whole));
+        format!(
+            "{double:.9} decided in f64, {double_double:.9} in double-double, {exact:.9} exactly"
+        )
+    };
     let ladder = rungs.ladder;
-    let questions = ladder.double + ladder.double_double + ladder.exact;
+    let parts = [ladder.double, ladder.double_double, ladder.exact];
+    let questions = parts.iter().sum();
     let mut text = format!(
         "{} rays: {:.9} decided in lanes of {}, {:.9} taken to the ladder; its {questions} \
-         questions: {:.9} decided in f64, {:.9} in double-double, {:.9} exactly",
+         questions: {}",
         rungs.rays,
         share(rungs.rays - rungs.undecided.min(rungs.rays), rungs.rays),
         precision.name(),
         share(rungs.undecided, rungs.rays),
-        share(ladder.double, questions),
-        share(ladder.double_double, questions),
-        share(ladder.exact, questions),
+        decided(parts, questions),
     );
     let implicit = rungs.implicit;
     let rays = implicit.rays();
     if rays > 0 {
+        let parts = [implicit.double, implicit.double_double, implicit.exact];
         let _ = write!(
             text,
-            "; {rays} questions about implicit surfaces: {:.9} decided in f64, {:.9} in \
-             double-double, {:.9} exactly, {} undecided, {} not certified",
-            share(implicit.double, rays),
-            share(implicit.double_double, rays),
-            share(implicit.exact, rays),
+            "; {rays} questions about implicit surfaces: {}, {} undecided, {} not certified",
+            decided(parts, rays),
             implicit.undecided,
             implicit.uncertified,
         );

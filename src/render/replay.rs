@@ -1,4 +1,4 @@
-//! One path again.
+//! One path of a render, followed again.
 
 use crate::integrate::chunk::{Request, Requests, Workspace};
 use crate::integrate::develop::Spectrometer;
@@ -10,7 +10,7 @@ use crate::math::lanes::Scalar;
 use crate::plan::{Plan, Tables};
 use crate::spectrum::grid::{CELLS, WavelengthGrid};
 
-/// Takes one sample and writes its path down; the bits are those of a render with the same plan.
+/// Takes one sample and records its path; the bits are those of a render with the same plan.
 pub fn replay(plan: &Plan, level: Instructions, request: Request) -> Replayed {
     match (&plan.tables, plan.choices.wavelengths) {
         (Tables::Single(scene), 4) => one::<f32, 4>(scene, &plan.grid, level, request),
@@ -26,7 +26,7 @@ fn one<T: Runs<C>, const C: usize>(
     level: Instructions,
     request: Request,
 ) -> Replayed {
-    let mut workspace = Workspace::<T, C>::new();
+    let mut workspace = Workspace::<T, C>::default();
     workspace.trace = Some(Vec::new());
     let mut requests = Requests::default();
     requests.push(request.x, request.y, request.sample, request.sample + 1);

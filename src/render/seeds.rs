@@ -2,8 +2,8 @@
 
 use sha2::{Digest, Sha256};
 
-/// The seed of one render: 63 bits of the SHA-256 of everything that names it, so that two
-/// renders share no random numbers (but by an accident of probability 2⁻⁶³ a pair).
+/// The seed of one render: 63 bits of the SHA-256 of everything that names it. Two renders share
+/// their random numbers with probability 2⁻⁶³.
 pub fn seed(base: u64, what: &str, replicate: u32) -> u64 {
     let digest = Sha256::digest(format!("{base}\n{what}\n{replicate}").as_bytes());
     let bytes = digest.iter().take(8);

@@ -1,4 +1,4 @@
-//! From plan to picture: passes until enough, and what was measured on the way.
+//! Rendering in passes over all tiles, and the estimates made of their sums.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -6,37 +6,43 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use super::bins::{BinGrid, Bins};
-use super::pass;
-use super::tile::{Outside, Tile, Window};
+use super::tile::{Outside, Tile, Window, Worker};
 use crate::film::pixels;
 use crate::integrate::chunk;
+use crate::integrate::develop::Spectrometer;
+use crate::integrate::dispatch::Runs;
 use crate::integrate::intersect::Rungs;
+use crate::integrate::model::Model;
 use crate::math::instructions::Instructions;
-use crate::plan::Plan;
+use crate::plan::{Plan, Tables};
+use crate::sample::replicates::Replicates;
 use crate::spectrum::observer::xyz_to_linear_srgb;
 use crate::stats::Estimate;
+use crate::stats::blocks::{EDGE, members};
 
 /// What to render besides what the plan says.
 #[derive(Debug, Clone, Copy)]
-pub struct Request {
+pub struct Request<'a> {
     /// The pixels wanted; coordinates are those of the whole image.
     pub window: Window,
     /// Samples a pixel at most.
     pub samples: u32,
     /// Wall-clock time after which no further pass begins.
     pub time: Option<Duration>,
-    /// Instruction set.
+    /// Instruction set; the bits are the same with each.
     pub instructions: Instructions,
+    /// Bins of wavelength that radiance is summed in besides.
+    pub bins: Option<&'a BinGrid>,
 }
 
-/// What a render tells while it runs, between passes; returning `false` stops it.
+/// Watches a render between its passes, and may stop it.
 pub trait Progress {
-    /// Called after each pass with the samples done, the samples wanted, the time spent and the
-    /// standard error of the mean luminance relative to it, where known.
+    /// Called after each pass with the samples a pixel done and wanted, the time spent, and the
+    /// standard error of the mean luminance over the mean, where it is known; `false` stops the render.
     fn passed(&mut self, done: u32, wanted: u32, spent: Duration, error: Option<f64>) -> bool;
 }
 
-/// Progress that nobody watches.
+/// Never stops a render.
 #[derive(Debug, Clone, Copy)]
 pub struct Unwatched;
 
@@ -53,27 +59,21 @@ pub struct Rendered {
     pub window: Window,
     /// Samples a pixel.
     pub samples: u32,
-    /// Seconds in passes.
+    /// Wall-clock seconds of all passes.
     pub seconds: f64,
-    /// Which arithmetic decided the rays.
+    /// Number of rays that each arithmetic decided.
     pub rungs: Rungs,
     /// Samples left out because they were not numbers.
     pub not_a_number: u64,
-    /// The first of them, to be replayed.
+    /// The first sample left out, to be replayed.
     pub first_not_a_number: Option<chunk::Request>,
+    /// Mean luminance after the last pass.
+    luminance: Estimate,
+    replicates: Replicates,
     tiles: Vec<Tile>,
 }
 
-/// A share with its standard error.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Share {
-    /// The estimate.
-    pub value: f64,
-    /// Its standard error.
-    pub standard_error: f64,
-}
-
-impl Request {
+impl Request<'_> {
     /// All of a picture, with the best instructions there are and no limit of time.
     pub fn whole(size: [u32; 2], samples: u32) -> Self {
         Self {
@@ -81,6 +81,7 @@ impl Request {
             samples,
             time: None,
             instructions: Instructions::best(),
+            bins: None,
         }
     }
 }
@@ -88,33 +89,13 @@ impl Request {
 /// Renders. Passes are over the whole window and their sizes are fixed before they begin, so that
 /// stopping between them favours no sample.
 pub fn render(plan: &Plan, request: &Request, progress: &mut dyn Progress) -> Rendered {
-    let tiles = request.window.tiles().into_iter();
-    let tiles = tiles.map(|window| Tile::new(window, plan.choices.replicates, request.samples));
-    run(plan, request, tiles.collect(), progress)
-}
-
-/// Renders, and sums radiance by pixel and bin of wavelength besides.
-pub fn render_binned(
-    plan: &Plan,
-    request: &Request,
-    grid: &BinGrid,
-    progress: &mut dyn Progress,
-) -> Rendered {
-    let shares = Arc::new(grid.shares(&plan.grid));
+    let (replicates, samples) = (plan.choices.replicates, request.samples);
+    let shares = request.bins.map(|grid| Arc::new(grid.shares(&plan.grid)));
+    let bins = |pixels: usize| Some(Bins::new(pixels, shares.clone()?, replicates, samples));
     let tiles = request.window.tiles().into_iter().map(|window| Tile {
-        bins: Some(Bins::new(
-            window.pixels(),
-            Arc::clone(&shares),
-            plan.choices.replicates,
-            request.samples,
-        )),
-        ..Tile::new(window, plan.choices.replicates, request.samples)
+        bins: bins(window.pixels()),
+        ..Tile::new(window, replicates, samples)
     });
-    run(plan, request, tiles.collect(), progress)
-}
-
-fn run(plan: &Plan, request: &Request, tiles: Vec<Tile>, progress: &mut dyn Progress) -> Rendered {
-    let start = Instant::now();
     let mut rendered = Rendered {
         window: request.window,
         samples: 0,
@@ -122,20 +103,20 @@ fn run(plan: &Plan, request: &Request, tiles: Vec<Tile>, progress: &mut dyn Prog
         rungs: Rungs::default(),
         not_a_number: 0,
         first_not_a_number: None,
-        tiles,
+        luminance: Estimate::exact(f64::NAN),
+        replicates,
+        tiles: tiles.collect(),
     };
+    let start = Instant::now();
     while rendered.samples < request.samples {
         let size = next_pass(&rendered, request, start.elapsed());
         let (from, to) = (rendered.samples, rendered.samples + size);
-        pass::run(plan, request.instructions, &mut rendered.tiles, from, to);
+        pass(plan, request.instructions, &mut rendered.tiles, from, to);
         rendered.samples = to;
         rendered.seconds = start.elapsed().as_secs_f64();
-        let goes_on = progress.passed(
-            to,
-            request.samples,
-            start.elapsed(),
-            rendered.mean_luminance().relative_error(),
-        );
+        rendered.luminance = rendered.luminance_of_tiles();
+        let error = rendered.luminance.relative_error();
+        let goes_on = progress.passed(to, request.samples, start.elapsed(), error);
         let late = request.time.is_some_and(|time| start.elapsed() >= time);
         if !goes_on || late {
             break;
@@ -147,6 +128,32 @@ fn run(plan: &Plan, request: &Request, tiles: Vec<Tile>, progress: &mut dyn Prog
         rendered.first_not_a_number = rendered.first_not_a_number.or(tile.first_not_a_number);
     }
     rendered
+}
+
+/// Adds samples `from .. to` of every pixel of every tile, on the threads of the current pool.
+fn pass(plan: &Plan, level: Instructions, tiles: &mut [Tile], from: u32, to: u32) {
+    match (&plan.tables, plan.choices.wavelengths) {
+        (Tables::Single(scene), 4) => spread::<f32, 4>(scene, level, tiles, from, to),
+        (Tables::Single(scene), _) => spread::<f32, 8>(scene, level, tiles, from, to),
+        (Tables::Double(scene), 4) => spread::<f64, 4>(scene, level, tiles, from, to),
+        (Tables::Double(scene), _) => spread::<f64, 8>(scene, level, tiles, from, to),
+    }
+}
+
+fn spread<T: Runs<C>, const C: usize>(
+    scene: &(Model<T>, Spectrometer<T>),
+    level: Instructions,
+    tiles: &mut [Tile],
+    from: u32,
+    to: u32,
+) {
+    // A bridge asks for buffers once a thread; splitting the slice would ask at every split.
+    tiles
+        .iter_mut()
+        .par_bridge()
+        .for_each_init(Worker::<T, C>::default, |worker, tile| {
+            tile.add(level, scene, from, to, worker);
+        });
 }
 
 /// Longest a pass should take, seconds, so that stopping is never far away.
@@ -194,38 +201,33 @@ impl Rendered {
     /// Every pixel's estimate of radiance in a bin, row by row; `None` where bins were not asked
     /// for.
     pub fn bin(&self, bin: usize) -> Option<Vec<pixels::Estimate<1>>> {
-        let wanted = self.tiles.iter().all(|tile| tile.bins.is_some());
         let counts = self.counts();
+        let unknown = pixels::Estimate::UNKNOWN;
         let estimate = |tile: &Tile, pixel: usize| {
             let bins = tile.bins.as_ref();
-            bins.map_or(pixels::Estimate::UNKNOWN, |bins| {
-                bins.estimate(pixel, bin, &counts)
-            })
+            bins.map_or(unknown, |bins| bins.estimate(pixel, bin, &counts))
         };
-        wanted.then(|| self.image(pixels::Estimate::UNKNOWN, estimate))
+        let wanted = self.tiles.iter().all(|tile| tile.bins.is_some());
+        wanted.then(|| self.image(unknown, estimate))
     }
 
     /// Luminance of every pixel, row by row, in each of its replicates.
     pub fn replicate_luminances(&self) -> Vec<Vec<f64>> {
-        let mut image = vec![Vec::new(); self.window.pixels()];
         let counts = self.counts();
-        self.place(|index, tile, pixel| {
+        self.image(Vec::new(), |tile, pixel| {
             let means = tile.pixels.replicate_means(pixel, &counts);
-            image[index] = means.map(|xyz| xyz[1]).collect();
-        });
-        image
+            means.map(|xyz| xyz[1]).collect()
+        })
     }
 
     /// Replicates that every pixel has.
     pub fn replicates(&self) -> u32 {
-        let tile = self.tiles.first();
-        tile.map_or(0, |tile| tile.pixels.replicates(self.samples))
+        self.replicates.count(self.samples)
     }
 
     /// Samples of each replicate, the same for every pixel.
     fn counts(&self) -> Vec<f64> {
-        let tile = self.tiles.first();
-        tile.map_or_else(Vec::new, |tile| tile.pixels.counts(self.samples))
+        self.replicates.counts(self.samples)
     }
 
     fn estimates(&self, channels: impl Fn([f64; 3]) -> [f64; 3] + Copy) -> Vec<pixels::Estimate> {
@@ -235,24 +237,19 @@ impl Rendered {
         })
     }
 
-    /// A value for each pixel, row by row.
-    fn image<V: Copy>(&self, empty: V, value: impl Fn(&Tile, usize) -> V) -> Vec<V> {
+    /// The values that a tile has for its own pixels, for every pixel of the image, row by row.
+    fn image<V: Clone>(&self, empty: V, value: impl Fn(&Tile, usize) -> V) -> Vec<V> {
         let mut image = vec![empty; self.window.pixels()];
-        self.place(|index, tile, own| image[index] = value(tile, own));
-        image
-    }
-
-    /// Visits every pixel: its place in the image, row by row, its tile, and its place in that.
-    fn place(&self, mut visit: impl FnMut(usize, &Tile, usize)) {
         let width = self.window.width() as usize;
         for tile in &self.tiles {
             let tile_width = tile.window.width() as usize;
             for pixel in 0..tile.window.pixels() {
                 let x = (tile.window.x0 - self.window.x0) as usize + pixel % tile_width;
                 let y = (tile.window.y0 - self.window.y0) as usize + pixel / tile_width;
-                visit(y * width + x, tile, pixel);
+                image[y * width + x] = value(tile, pixel);
             }
         }
+        image
     }
 
     /// Means over the pixels of a region, which are scrambled independently of each other; standard
@@ -280,13 +277,16 @@ impl Rendered {
         })
     }
 
+    /// Mean luminance of each block of 8 × 8 pixels, row by row.
+    pub fn block_luminances(&self) -> Vec<Estimate> {
+        let [width, height] = [self.window.width(), self.window.height()].map(|n| n as usize);
+        let (image, blocks) = (self.xyz(), members(width, height, EDGE));
+        let blocks = blocks.iter();
+        blocks.map(|block| self.mean_of(&image, block, 1)).collect()
+    }
+
     /// The mean of a channel of an image of this render over some of its pixels.
-    pub(super) fn mean_of(
-        &self,
-        image: &[pixels::Estimate],
-        pixels: &[usize],
-        channel: usize,
-    ) -> Estimate {
+    fn mean_of(&self, image: &[pixels::Estimate], pixels: &[usize], channel: usize) -> Estimate {
         let values: Vec<f64> = pixels.iter().map(|&i| image[i].mean[channel]).collect();
         let errors = pixels.iter().map(|&i| image[i].standard_error[channel]);
         let variances: Vec<f64> = errors.map(|e| e * e).collect();
@@ -296,6 +296,10 @@ impl Rendered {
     /// Mean luminance; pixels are scrambled independently, so their squared standard errors add. The
     /// standard error is NaN with a single replicate.
     pub fn mean_luminance(&self) -> Estimate {
+        self.luminance
+    }
+
+    fn luminance_of_tiles(&self) -> Estimate {
         // Tiles side by side, then their sums in order: the same bits on any number of threads.
         let counts = self.counts();
         let tiles = self.tiles.par_iter();
@@ -316,7 +320,7 @@ impl Rendered {
     }
 
     /// Share of the luminance that `max_depth` cuts off.
-    pub fn cut_off(&self) -> Share {
+    pub fn cut_off(&self) -> Estimate {
         let samples = self.window.pixels() as f64 * f64::from(self.samples);
         let (mut sum, mut squares) = (0.0, 0.0);
         for tile in &self.tiles {
@@ -327,15 +331,13 @@ impl Rendered {
         let error = ((squares / samples - mean * mean).max(0.0) / samples).sqrt();
         let whole = self.mean_luminance().value + mean;
         if whole > 0.0 {
-            Share {
+            Estimate {
                 value: mean / whole,
                 standard_error: error / whole,
+                freedom: samples - 1.0,
             }
         } else {
-            Share {
-                value: 0.0,
-                standard_error: 0.0,
-            }
+            Estimate::exact(0.0)
         }
     }
 }

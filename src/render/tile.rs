@@ -30,11 +30,11 @@ pub struct Window {
     pub y1: u32,
 }
 
-/// Pixels that are not all in the picture, or none at all.
+/// A window that is empty, or not all in the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{window} is not inside the picture of {}x{} pixels", size[0], size[1])]
 pub struct Outside {
-    /// What was asked for.
+    /// The window asked for.
     pub window: Window,
     /// Width and height of the picture.
     pub size: [u32; 2],
@@ -73,7 +73,7 @@ impl Window {
         self.width() as usize * self.height() as usize
     }
 
-    /// Whether it has pixels, all of them in `whole`.
+    /// Whether the window has pixels, all of them in `whole`.
     pub fn is_inside(&self, whole: &Self) -> bool {
         let within =
             |from: u32, to: u32, [least, most]: [u32; 2]| least <= from && from < to && to <= most;
@@ -98,22 +98,22 @@ impl Window {
     }
 }
 
-/// What a tile has gathered.
+/// The sums of a tile.
 #[derive(Debug, Clone)]
 pub struct Tile {
-    /// Where it is.
+    /// The pixels of the tile.
     pub window: Window,
-    /// Its sums, row by row.
+    /// Sums of each pixel, row by row.
     pub pixels: Pixels,
-    /// Its spectral sums, where they are wanted.
+    /// Spectral sums of each pixel, where they are wanted.
     pub bins: Option<Bins>,
-    /// Which arithmetic decided its rays.
+    /// Number of rays that each arithmetic decided.
     pub rungs: Rungs,
     /// Sum and sum of squares of the luminance beyond `max_depth`, by sample.
     pub beyond: chunk::Beyond,
-    /// Samples that were not a number, and were left out.
+    /// Samples left out because they were not numbers.
     pub not_a_number: u64,
-    /// The first of them.
+    /// The first sample left out.
     pub first_not_a_number: Option<chunk::Request>,
 }
 
@@ -122,7 +122,7 @@ impl Tile {
     pub fn new(window: Window, replicates: Replicates, samples: u32) -> Self {
         Self {
             window,
-            pixels: Pixels::for_samples(window.pixels(), replicates, samples),
+            pixels: Pixels::new(window.pixels(), replicates, samples),
             bins: None,
             rungs: Rungs::default(),
             beyond: chunk::Beyond::default(),
@@ -227,12 +227,9 @@ struct Run {
     samples: Range<u32>,
 }
 
-/// Buffers of a worker in either precision.
+/// Buffers of a thread.
 #[derive(Debug, Default)]
-pub struct Worker<T, const C: usize>
-where
-    T: Scalar,
-{
+pub struct Worker<T: Scalar, const C: usize> {
     workspace: Workspace<T, C>,
     requests: chunk::Requests,
     runs: Vec<Run>,

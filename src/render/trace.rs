@@ -1,16 +1,15 @@
-//! The scene as single rays meet it, exactly: for given rays and for what is visible in the middle
-//! of each pixel.
+//! First surfaces along single rays, exactly: for given rays and for the centres of pixels.
 
 use std::borrow::Cow;
 
 use crate::math::instructions::Instructions;
 use crate::scene::{Named, Object, Scene, Shape};
 use crate::shape::hierarchy::Bounds;
-use crate::shape::implicit::certified::{Tier, Workspace};
-use crate::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
+use crate::shape::implicit::certified::Workspace;
+use crate::shape::implicit::placed::{ImplicitAnswer, PlacedImplicit};
 use crate::shape::index::RayIndex;
-use crate::shape::list::nearest_of;
-use crate::shape::{Placed, Query, Ray, Start, Tally};
+use crate::shape::list::nearest;
+use crate::shape::{Placed, Query, Ray, Start, Tally, Tier};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -24,79 +23,79 @@ pub struct Tracer {
     /// At equal t the lower one wins: 0 for opaque objects, 1 for glass.
     priorities: Vec<u8>,
     objects: Vec<Traced>,
-    /// All indices of objects, in order.
+    /// Indices of all objects, in order.
     all: Vec<u32>,
     /// Boxes over the objects, where there are many.
     index: Option<RayIndex>,
 }
 
-/// An object, placed.
 #[derive(Debug)]
 enum Traced {
     Canonical(Box<Placed>),
     Implicit(Box<PlacedImplicit>),
 }
 
-/// Most objects that are asked one after the other. Exact questions cost more than boxes by far; the
-/// limit keeps boxes, which are f64 with a bound, away from scenes that are made to be difficult.
+/// Most objects that are intersected one after the other, without boxes over them. Exact
+/// intersections cost far more than boxes; the limit keeps boxes, which are f64 with a bound, away from
+/// scenes that are made to be difficult.
 const LARGEST_LIST: usize = 64;
 
-/// The first thing a ray meets.
+/// The first surface that a ray meets.
 #[derive(Debug, Clone)]
 pub struct FirstHit {
     /// Index of the object.
     pub object: usize,
-    /// Where on the ray, in units of its direction.
+    /// Position on the ray, in units of its direction.
     pub t: f64,
     /// World coordinates.
     pub point: DVec3,
     /// Unit outward normal in the world, where there is one.
     pub normal: Option<DVec3>,
-    /// How an implicit surface was found.
+    /// How the hit was found, for an implicit surface.
     pub found: Option<Found>,
 }
 
-/// What a finder of implicit surfaces says besides t.
+/// How a hit on an implicit surface was found.
 #[derive(Debug, Clone)]
 pub struct Found {
-    /// Its name.
+    /// Name of the root finder.
     pub finder: &'static str,
-    /// Bounds of t.
+    /// Lower and upper bound of t.
     pub enclosure: [f64; 2],
-    /// How many times t is a root, where that is known.
+    /// Multiplicity of the root t, where it is known.
     pub multiplicity: Option<u32>,
-    /// What decided; `None` where nothing is proved.
+    /// The arithmetic that proved the root; `None` where nothing is proved.
     pub tier: Option<Tier>,
 }
 
-/// What is known of the first thing a ray meets.
+/// The first surface that a ray meets, as far as it could be decided.
 #[derive(Debug, Clone)]
 pub enum First {
-    /// It.
+    /// The ray meets this surface first.
     Hit(FirstHit),
-    /// There is none.
+    /// The ray meets no surface.
     Nothing,
-    /// The finder of that name could not tell.
+    /// The root finder of that name could not decide.
     Undecided(&'static str),
 }
 
-/// Who has decided how many questions.
+/// How many rays were traced, and which arithmetic decided them.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Decided {
-    /// Rays.
+    /// Rays traced.
     pub rays: u64,
-    /// Rays that hit something.
+    /// Rays that hit a surface.
     pub hits: u64,
-    /// Certified shapes, by rung.
+    /// Questions about canonical shapes, by the arithmetic that decided them.
     pub ladder: Tally,
     /// Rays that stay undecided.
     pub undecided: u64,
-    /// Implicit surfaces, by arithmetic.
-    pub implicit: ImplicitTally,
+    /// Questions about implicit surfaces, by the arithmetic that decided them.
+    pub implicit: Tally,
 }
 
 impl Decided {
-    /// The counts of both together.
+    /// The sums of both counts.
     pub fn joined(self, other: Self) -> Self {
         Self {
             rays: self.rays + other.rays,
@@ -108,11 +107,11 @@ impl Decided {
     }
 }
 
-/// An object's matrix has no inverse.
+/// An object whose matrix has no inverse.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the object \"{name}\" has a transform that is not invertible")]
 pub struct Singular {
-    /// The object.
+    /// Name of the object.
     pub name: String,
 }
 
@@ -135,10 +134,14 @@ impl Tracer {
             let [low, high] = object.value.shape.corners()?;
             Some(Bounds::around_image(&object.value.to_world, low, high))
         };
+        let priority = |object: &Named<Object>| {
+            let material = scene.materials.get(object.value.material);
+            u8::from(material.is_some_and(|m| m.value.surface.kind.refracts()))
+        };
         let objects = &scene.objects;
         Ok(Self {
             names: objects.iter().map(|o| o.name.clone()).collect(),
-            priorities: objects.iter().map(|o| priority(scene, o)).collect(),
+            priorities: objects.iter().map(priority).collect(),
             objects: objects.iter().map(place).collect::<Result<_, _>>()?,
             all: (0..objects.len() as u32).collect(),
             index: (objects.len() > LARGEST_LIST)
@@ -161,11 +164,8 @@ impl Tracer {
             t_min: 0.0,
             t_max: f64::INFINITY,
         };
-        self.first_hit(
-            &query,
-            &mut Workspace::new(Instructions::best()),
-            &mut Decided::default(),
-        )
+        let mut workspace = Workspace::new(Instructions::best());
+        self.first_hit(&query, &mut workspace, &mut Decided::default())
     }
 
     /// The first hit within the limits of `query`; `decided` counts the answers, and one
@@ -210,7 +210,7 @@ impl Tracer {
             }
         }
         decided.rays += 1;
-        // What could not be told may lie before what was found.
+        // The surface that was not decided may lie before the one that was found.
         if let Some(finder) = undecided {
             decided.undecided += 1;
             return First::Undecided(finder);
@@ -234,7 +234,7 @@ impl Tracer {
         });
         let start = |_| Start::Free;
         let priority = |object: usize| self.priorities[object];
-        let (object, hit) = nearest_of(canonical, query, start, priority, tally)?;
+        let (object, hit) = nearest(canonical, query, start, priority, tally)?;
         Some(FirstHit {
             object,
             t: hit.t,
@@ -280,9 +280,4 @@ pub fn first_hits(
             }
         })
         .collect())
-}
-
-fn priority(scene: &Scene, object: &Named<Object>) -> u8 {
-    let material = scene.materials.get(object.value.material);
-    u8::from(material.is_some_and(|m| m.value.surface.kind.refracts()))
 }

@@ -3,10 +3,10 @@
 use std::fmt;
 use std::path::PathBuf;
 
-/// A scene that cannot be had.
+/// Why there is no scene.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
-    /// The operating system would not hand over the file.
+    /// The operating system refuses to read the file.
     #[error("cannot read {}: {reason}", path.display())]
     Unreadable {
         /// The file asked for.
@@ -20,7 +20,7 @@ pub enum SceneError {
         /// The path asked for.
         path: PathBuf,
     },
-    /// The file has more bytes than any sensible scene.
+    /// The file has more bytes than a scene file may have.
     #[error("{} is larger than {limit} bytes\n  = expected: a scene file of at most {limit} bytes", path.display())]
     TooLarge {
         /// The file asked for.
@@ -113,17 +113,10 @@ impl Diagnostic {
         let line_end = text[start..].find('\n').map_or(text.len(), |i| start + i);
         let column = text[line_start..start].chars().count();
         let width = text[start..end.min(line_end)].trim_end().chars().count();
-        let skipped = if column > EXCERPT - LEAD {
-            column - LEAD
-        } else {
-            0
-        };
-        let excerpt: String = text[line_start..line_end]
-            .chars()
-            .skip(skipped)
-            .take(EXCERPT)
-            .map(printable)
-            .collect();
+        let is_cut = column > EXCERPT - LEAD;
+        let skipped = if is_cut { column - LEAD } else { 0 };
+        let line = text[line_start..line_end].chars().skip(skipped);
+        let excerpt: String = line.take(EXCERPT).map(printable).collect();
         let indent = column - skipped;
         Self {
             message,
@@ -159,21 +152,20 @@ fn floor_boundary(text: &str, index: usize) -> usize {
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let number = self.line.to_string();
-        let gutter = " ".repeat(number.len());
-        writeln!(f, "{}", self.message)?;
-        writeln!(
-            f,
-            "{gutter}--> {}:{}:{}",
-            self.origin, self.line, self.column
-        )?;
-        writeln!(f, "{gutter} |")?;
-        writeln!(f, "{number} | {}", self.excerpt)?;
+        let Self {
+            message,
+            origin,
+            line,
+            column,
+            excerpt,
+            ..
+        } = self;
+        let gutter = " ".repeat(line.to_string().len());
+        let (blank, marks) = (" ".repeat(self.indent), "^".repeat(self.width));
+        writeln!(f, "{message}\n{gutter}--> {origin}:{line}:{column}")?;
         write!(
             f,
-            "{gutter} | {}{}",
-            " ".repeat(self.indent),
-            "^".repeat(self.width)
+            "{gutter} |\n{line} | {excerpt}\n{gutter} | {blank}{marks}"
         )?;
         if let Some(expected) = &self.expected {
             write!(f, "\n{gutter} = expected: {expected}")?;

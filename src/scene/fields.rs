@@ -4,12 +4,14 @@
 //! that in the end the first complaint in the order of the file can be shown.
 
 use std::cell::{Cell, RefCell};
+use std::fmt::Display;
 use std::ops::RangeInclusive;
 
 use glam::DVec3;
 
-use super::names::{nearest, one_of};
-use super::tree::{Node, Place, Table, Value};
+use super::FinderChoice;
+use super::implicit::DefaultFinder;
+use super::tree::{Entry, Node, Place, Table, Value};
 
 /// Something wrong at a place.
 #[derive(Debug, Clone)]
@@ -23,24 +25,14 @@ pub(super) struct Complaint {
 }
 
 impl Complaint {
-    pub fn new(place: Place, message: impl Into<String>) -> Self {
+    pub fn new(place: Place, message: impl Into<String>, expected: Option<String>) -> Self {
         Self {
             place,
             message: message.into(),
-            expected: None,
+            expected,
             suggestion: None,
             missing: false,
         }
-    }
-
-    pub fn expected(mut self, expected: impl Into<String>) -> Self {
-        self.expected = Some(expected.into());
-        self
-    }
-
-    pub fn suggest(mut self, suggestion: Option<String>) -> Self {
-        self.suggestion = suggestion;
-        self
     }
 }
 
@@ -56,13 +48,28 @@ pub(super) struct Report {
 const SEARCHES: usize = 64;
 
 impl Report {
-    pub fn add(&self, complaint: Complaint) {
+    fn add(&self, complaint: Complaint) {
         self.complaints.borrow_mut().push(complaint);
     }
 
-    /// Adds a complaint and returns `None`, which is what a reader then returns.
-    pub fn fail<T>(&self, complaint: Complaint) -> Option<T> {
-        self.add(complaint);
+    /// Complains and returns `None`, which is what a reader then returns.
+    pub fn fail<T>(
+        &self,
+        place: Place,
+        message: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Option<T> {
+        self.complain(place, message, Some(expected.into()))
+    }
+
+    /// The same where it may be unknown what would have been right.
+    pub fn complain<T>(
+        &self,
+        place: Place,
+        message: impl Into<String>,
+        expected: Option<String>,
+    ) -> Option<T> {
+        self.add(Complaint::new(place, message, expected));
         None
     }
 
@@ -90,121 +97,143 @@ impl Report {
     ) -> Option<T> {
         let search = self.searches.get() < SEARCHES;
         self.searches.set(self.searches.get() + 1);
-        let suggestion = if search { nearest(name, names) } else { None };
-        self.fail(
-            Complaint::new(place, message)
-                .expected(one_of(names))
-                .suggest(suggestion),
-        )
+        let mut complaint = Complaint::new(place, message, Some(one_of(names)));
+        complaint.suggestion = search.then(|| nearest(name, names)).flatten();
+        self.add(complaint);
+        None
+    }
+}
+
+/// A value to be read.
+#[derive(Clone)]
+pub(super) struct Item<'a> {
+    pub report: &'a Report,
+    /// What it is called in messages.
+    pub path: String,
+    pub node: &'a Node,
+}
+
+impl<'a> Item<'a> {
+    pub fn fail<T>(&self, message: impl Into<String>, expected: impl Into<String>) -> Option<T> {
+        self.report.fail(self.node.place, message, expected)
     }
 
-    pub fn wrong_type<T>(&self, what: &str, node: &Node, expected: &str) -> Option<T> {
-        self.fail(
-            Complaint::new(node.place, format!("{what} is {}", node.kind())).expected(expected),
-        )
+    /// Complains of what it is.
+    pub fn wrong<T>(&self, is: impl Display, expected: impl Into<String>) -> Option<T> {
+        self.fail(format!("{} is {is}", self.path), expected)
+    }
+
+    pub fn wrong_type<T>(&self, expected: impl Into<String>) -> Option<T> {
+        self.wrong(self.node.kind(), expected)
+    }
+
+    /// Complains that it is none of `names`.
+    pub fn unknown<T>(&self, message: String, name: &str, names: &[&str]) -> Option<T> {
+        self.report.unknown(self.node.place, message, name, names)
     }
 
     /// A finite number.
-    pub fn number(&self, what: &str, node: &Node) -> Option<f64> {
+    pub fn number(&self) -> Option<f64> {
         let expected = "a finite number";
-        match &node.value {
+        match &self.node.value {
             #[expect(
                 clippy::cast_precision_loss,
                 reason = "a number written without a point means the nearest f64"
             )]
             Value::Integer(number) => Some(*number as f64),
             Value::Float(number) if number.is_finite() => Some(*number),
-            Value::Float(number) => {
-                let name = if number.is_nan() { "NaN" } else { "infinite" };
-                self.fail(
-                    Complaint::new(node.place, format!("{what} is {name}")).expected(expected),
-                )
-            }
-            _ => self.wrong_type(what, node, expected),
+            Value::Float(number) if number.is_nan() => self.wrong("NaN", expected),
+            Value::Float(_) => self.wrong("infinite", expected),
+            _ => self.wrong_type(expected),
         }
     }
 
     /// A finite number that passes a test.
-    pub fn number_that(
-        &self,
-        what: &str,
-        node: &Node,
-        expected: &str,
-        test: impl Fn(f64) -> bool,
-    ) -> Option<f64> {
-        let number = self.number(what, node)?;
+    pub fn number_that(&self, expected: &str, test: impl Fn(f64) -> bool) -> Option<f64> {
+        let number = self.number()?;
         if test(number) {
             return Some(number);
         }
-        self.fail(Complaint::new(node.place, format!("{what} is {number}")).expected(expected))
+        self.wrong(number, expected)
     }
 
     /// A number above zero.
-    pub fn positive(&self, what: &str, node: &Node) -> Option<f64> {
-        self.number_that(what, node, "a number greater than 0", |x| x > 0.0)
+    pub fn positive(&self) -> Option<f64> {
+        self.number_that("a number greater than 0", |x| x > 0.0)
     }
 
     /// An integer in a range.
-    pub fn integer(&self, what: &str, node: &Node, range: RangeInclusive<i64>) -> Option<i64> {
+    pub fn integer<T>(&self, range: RangeInclusive<T>) -> Option<T>
+    where
+        T: Display + TryFrom<i64> + PartialOrd,
+    {
         let expected = format!("an integer from {} to {}", range.start(), range.end());
-        match &node.value {
-            Value::Integer(number) if range.contains(number) => Some(*number),
-            Value::Integer(number) => self
-                .fail(Complaint::new(node.place, format!("{what} is {number}")).expected(expected)),
-            Value::Float(number) => self.fail(
-                Complaint::new(node.place, format!("{what} is {number:?}")).expected(expected),
-            ),
-            _ => self.wrong_type(what, node, &expected),
+        let allowed = |number: &T| range.contains(number);
+        match &self.node.value {
+            Value::Integer(number) => match T::try_from(*number).ok().filter(allowed) {
+                Some(number) => Some(number),
+                None => self.wrong(number, expected),
+            },
+            Value::Float(number) => self.wrong(format!("{number:?}"), expected),
+            _ => self.wrong_type(expected),
         }
     }
 
-    /// An integer in a range that fits 32 bits.
-    pub fn count(&self, what: &str, node: &Node, range: RangeInclusive<u32>) -> Option<u32> {
-        let range = i64::from(*range.start())..=i64::from(*range.end());
-        u32::try_from(self.integer(what, node, range)?).ok()
-    }
-
-    pub fn text<'a>(&self, what: &str, node: &'a Node) -> Option<&'a str> {
-        match &node.value {
+    pub fn text(&self) -> Option<&'a str> {
+        match &self.node.value {
             Value::Text(text) => Some(text),
-            _ => self.wrong_type(what, node, "a string"),
+            _ => self.wrong_type("a string"),
         }
     }
 
-    pub fn list<'a>(&self, what: &str, node: &'a Node, expected: &str) -> Option<&'a [Node]> {
-        match &node.value {
+    pub fn nodes(&self, expected: &str) -> Option<&'a [Node]> {
+        match &self.node.value {
             Value::List(nodes) => Some(nodes),
-            _ => self.wrong_type(what, node, expected),
+            _ => self.wrong_type(expected),
         }
+    }
+
+    /// The entries of an array.
+    pub fn list(&self, expected: &str) -> Option<Vec<Self>> {
+        let nodes = self.nodes(expected)?.iter().enumerate();
+        let entries = nodes.map(|(i, node)| Self {
+            path: format!("{}[{i}]", self.path),
+            node,
+            ..*self
+        });
+        Some(entries.collect())
+    }
+
+    /// The entries of an array of `N`.
+    pub fn array<const N: usize>(&self, expected: &str) -> Option<[Self; N]> {
+        let entries = self.list(expected)?;
+        let count = entries.len();
+        entries.try_into().ok().or_else(|| {
+            let message = format!("{} has {count} entries", self.path);
+            self.fail(message, expected)
+        })
     }
 
     /// `N` finite numbers.
-    pub fn numbers<const N: usize>(&self, what: &str, node: &Node) -> Option<[f64; N]> {
-        let expected = format!("an array of {N} finite numbers");
-        let nodes = self.list(what, node, &expected)?;
-        if nodes.len() != N {
-            let message = format!("{what} has {} entries", nodes.len());
-            return self.fail(Complaint::new(node.place, message).expected(expected));
-        }
+    pub fn numbers<const N: usize>(&self) -> Option<[f64; N]> {
+        let entries = self.array::<N>(&format!("an array of {N} finite numbers"))?;
         let mut numbers = [0.0; N];
-        for (i, (number, node)) in numbers.iter_mut().zip(nodes).enumerate() {
-            *number = self.number(&format!("{what}[{i}]"), node)?;
+        for (number, entry) in numbers.iter_mut().zip(entries) {
+            *number = entry.number()?;
         }
         Some(numbers)
     }
 
     /// A point or vector `[x, y, z]`.
-    pub fn vector(&self, what: &str, node: &Node) -> Option<DVec3> {
-        self.numbers(what, node).map(DVec3::from_array)
+    pub fn vector(&self) -> Option<DVec3> {
+        self.numbers().map(DVec3::from_array)
     }
 
     /// A vector other than zero, scaled to length 1.
-    pub fn direction(&self, what: &str, node: &Node) -> Option<DVec3> {
-        let vector = self.vector(what, node)?;
+    pub fn direction(&self) -> Option<DVec3> {
+        let vector = self.vector()?;
         if vector == DVec3::ZERO {
-            let message = format!("{what} is the zero vector");
-            return self
-                .fail(Complaint::new(node.place, message).expected("a vector with a direction"));
+            return self.wrong("the zero vector", "a vector with a direction");
         }
         // Bringing the largest component to ±1 first keeps squares from under- and overflowing
         // and leaves multiples of the axes exact.
@@ -212,17 +241,31 @@ impl Report {
         Some(scaled / scaled.length())
     }
 
-    /// One of several words.
-    pub fn choice<T: Copy>(&self, what: &str, node: &Node, choices: &[(&str, T)]) -> Option<T> {
-        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
-        let Value::Text(text) = &node.value else {
-            return self.wrong_type(what, node, &one_of(&names));
+    /// One of several things by its name.
+    pub fn choice<T: Copy>(&self, all: &[T], name: impl Fn(T) -> &'static str) -> Option<T> {
+        let names: Vec<&str> = all.iter().map(|one| name(*one)).collect();
+        let Value::Text(text) = &self.node.value else {
+            return self.wrong_type(one_of(&names));
         };
-        match choices.iter().find(|(name, _)| name == text) {
-            Some((_, choice)) => Some(*choice),
-            None => self.unknown(node.place, format!("{what} is \"{text}\""), text, &names),
-        }
+        let found = all.iter().find(|one| name(**one) == text);
+        found.copied().or_else(|| {
+            let message = format!("{} is \"{text}\"", self.path);
+            self.unknown(message, text, &names)
+        })
     }
+
+    /// A finder of implicit surfaces, and where it is written.
+    pub fn finder(&self) -> Option<DefaultFinder> {
+        let place = self.node.place;
+        let (_, finder) = self.choice(FinderChoice::NAMES, |(name, _)| name)?;
+        Some((finder, Some(place)))
+    }
+}
+
+/// All values, if nothing is wrong with any. All are read before any is missed, so that the first
+/// complaint is the first in the file.
+pub(super) fn every<T>(values: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+    values.collect::<Vec<_>>().into_iter().collect()
 }
 
 /// A table whose keys are known.
@@ -238,16 +281,16 @@ pub(super) struct Fields<'a> {
 
 impl<'a> Fields<'a> {
     /// Opens a table and complains of every key that is not in `keys`.
-    pub fn open(
-        report: &'a Report,
-        what: impl Into<String>,
-        node: &'a Node,
-        keys: &[&str],
-    ) -> Option<Self> {
-        let what = what.into();
-        match &node.value {
-            Value::Table(table) => Some(Self::of(report, what, node.place, table, keys)),
-            _ => report.wrong_type(&what, node, "a table"),
+    pub fn open(item: Item<'a>, keys: &[&str]) -> Option<Self> {
+        match &item.node.value {
+            Value::Table(table) => Some(Self::of(
+                item.report,
+                item.path,
+                item.node.place,
+                table,
+                keys,
+            )),
+            _ => item.wrong_type("a table"),
         }
     }
 
@@ -259,24 +302,21 @@ impl<'a> Fields<'a> {
         table: &'a Table,
         keys: &[&str],
     ) -> Self {
-        let mut misspelt = false;
-        for entry in &table.entries {
-            if !keys.contains(&entry.key.as_str()) {
-                misspelt = true;
-                let message = if what.is_empty() {
-                    format!("unknown key \"{}\"", entry.key)
-                } else {
-                    format!("unknown key \"{}\" in {what}", entry.key)
-                };
-                report.unknown::<()>(entry.key_place, message, &entry.key, keys);
-            }
+        let unknown = |entry: &&Entry| !keys.contains(&entry.key.as_str());
+        let unknown: Vec<&Entry> = table.entries.iter().filter(unknown).collect();
+        for Entry { key, key_place, .. } in &unknown {
+            let message = match what.as_str() {
+                "" => format!("unknown key \"{key}\""),
+                what => format!("unknown key \"{key}\" in {what}"),
+            };
+            report.unknown::<()>(*key_place, message, key, keys);
         }
         Self {
             report,
             what,
             place,
             table,
-            misspelt,
+            misspelt: !unknown.is_empty(),
         }
     }
 
@@ -301,11 +341,19 @@ impl<'a> Fields<'a> {
     /// Complains that something is missing here.
     pub fn missing<T>(&self, message: String, expected: &str) -> Option<T> {
         if !self.misspelt {
-            let mut complaint = Complaint::new(self.place, message).expected(expected);
+            let mut complaint = Complaint::new(self.place, message, Some(expected.to_owned()));
             complaint.missing = true;
             self.report.add(complaint);
         }
         None
+    }
+
+    pub fn item(&self, key: &str) -> Option<Item<'a>> {
+        self.get(key).map(|node| Item {
+            report: self.report,
+            path: self.path(key),
+            node,
+        })
     }
 
     /// A value that must be there.
@@ -313,12 +361,11 @@ impl<'a> Fields<'a> {
         &self,
         key: &str,
         expected: &str,
-        read: impl FnOnce(&str, &'a Node) -> Option<T>,
+        read: impl FnOnce(Item<'a>) -> Option<T>,
     ) -> Option<T> {
-        let path = self.path(key);
-        match self.get(key) {
-            Some(node) => read(&path, node),
-            None => self.missing(format!("{path} is missing"), expected),
+        match self.item(key) {
+            Some(item) => read(item),
+            None => self.missing(format!("{} is missing", self.path(key)), expected),
         }
     }
 
@@ -327,41 +374,77 @@ impl<'a> Fields<'a> {
         &self,
         key: &str,
         default: T,
-        read: impl FnOnce(&str, &'a Node) -> Option<T>,
+        read: impl FnOnce(Item<'a>) -> Option<T>,
     ) -> Option<T> {
-        match self.get(key) {
-            Some(node) => read(&self.path(key), node),
-            None => Some(default),
-        }
+        self.item(key).map_or(Some(default), read)
+    }
+
+    /// A value that may be absent: then `Some(None)`.
+    pub fn maybe<T>(
+        &self,
+        key: &str,
+        read: impl FnOnce(Item<'a>) -> Option<T>,
+    ) -> Option<Option<T>> {
+        self.optional(key, None, |item| read(item).map(Some))
     }
 
     /// The one key of `keys` that is there; complains when there are none or several.
-    pub fn exactly_one(&self, keys: &[&'static str]) -> Option<(&'static str, &'a Node)> {
-        match self.at_most_one(keys)? {
-            Some(found) => Some(found),
-            None => {
-                let expected = one_of(keys);
-                self.missing(format!("{} does not say what it is", self.what), &expected)
-            }
-        }
+    pub fn exactly_one(&self, keys: &[&'static str]) -> Option<(&'static str, Item<'a>)> {
+        self.at_most_one(keys)?.or_else(|| {
+            let message = format!("{} does not say what it is", self.what);
+            self.missing(message, &one_of(keys))
+        })
     }
 
     /// The key of `keys` that is there, if any; complains when there are several.
-    pub fn at_most_one(&self, keys: &[&'static str]) -> Option<Option<(&'static str, &'a Node)>> {
-        let mut found: Vec<_> = keys
-            .iter()
-            .filter_map(|key| self.table.entry(key).map(|entry| (*key, entry)))
-            .collect();
+    pub fn at_most_one(&self, keys: &[&'static str]) -> Option<Option<(&'static str, Item<'a>)>> {
+        let entry = |key: &&'static str| Some((*key, self.table.entry(key)?));
+        let mut found: Vec<_> = keys.iter().filter_map(entry).collect();
         found.sort_by_key(|(_, entry)| entry.key_place);
-        match found.as_slice() {
-            [] => Some(None),
-            [(key, entry)] => Some(Some((key, &entry.node))),
-            [(first, _), (second, entry), ..] => {
-                let message = format!("\"{second}\" contradicts \"{first}\" in {}", self.what);
-                let expected = format!("only {}", one_of(keys));
-                self.report
-                    .fail(Complaint::new(entry.key_place, message).expected(expected))
-            }
+        if let [(first, _), (second, entry), ..] = found.as_slice() {
+            let message = format!("\"{second}\" contradicts \"{first}\" in {}", self.what);
+            let expected = format!("only {}", one_of(keys));
+            return self.report.fail(entry.key_place, message, expected);
         }
+        let found = found.first();
+        Some(found.and_then(|(key, _)| Some((*key, self.item(key)?))))
+    }
+}
+
+/// As many names as a message lists.
+const LISTED: usize = 12;
+
+/// The nearest of `names`, if it is close enough to be a slip of the pen: one edit in three
+/// letters, at least one, whatever the case.
+pub(super) fn nearest(name: &str, names: &[&str]) -> Option<String> {
+    let lower = name.to_lowercase();
+    let allowed = (lower.chars().count() / 3).max(1);
+    names
+        .iter()
+        .map(|candidate| {
+            let distance = strsim::osa_distance(&lower, &candidate.to_lowercase());
+            (distance, *candidate)
+        })
+        .filter(|(distance, _)| *distance <= allowed)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate.to_owned())
+}
+
+/// `one of "a", "b"`, shortened when there are many.
+pub(super) fn one_of(names: &[&str]) -> String {
+    if names.is_empty() {
+        return "a name (but none is defined)".to_owned();
+    }
+    let listed: Vec<String> = names
+        .iter()
+        .take(LISTED)
+        .map(|n| format!("\"{n}\""))
+        .collect();
+    let rest = names.len() - listed.len();
+    let listed = listed.join(", ");
+    match (names.len(), rest) {
+        (1, _) => listed,
+        (_, 0) => format!("one of {listed}"),
+        _ => format!("one of {listed} … and {rest} more"),
     }
 }

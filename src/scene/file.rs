@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::build;
 use super::error::{Diagnostic, Origin, SceneError};
-use super::fields::{Complaint, Fields, Report};
+use super::fields::{Complaint, Fields, Item, Report};
 use super::overlay::{self, Setting};
 use super::tree::{self, Entry, Node, Origins, Place, Table, Value};
 use super::{Scene, Source};
@@ -55,44 +55,34 @@ pub fn read(path: &Path) -> Result<String, SceneError> {
         let at = error.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(error.as_bytes());
         let name = path.display().to_string();
-        let mut diagnostic = Diagnostic::at(
-            Origin::File(name),
-            &text,
-            at,
-            at + 1,
-            "not UTF-8 text".to_owned(),
-        );
+        let message = "not UTF-8 text".to_owned();
+        let mut diagnostic = Diagnostic::at(Origin::File(name), &text, at, at + 1, message);
         diagnostic.expected = Some("a scene file (TOML) in UTF-8".to_owned());
         SceneError::Invalid(Box::new(diagnostic))
     })
 }
 
 /// Reads a whole file of bounded size. Devices and pipes have no size to ask for, so the reading
-/// itself is bounded too.
+/// itself is bounded.
 pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, SceneError> {
     let unreadable = |reason| SceneError::Unreadable {
         path: path.to_owned(),
         reason,
     };
-    let too_large = || SceneError::TooLarge {
-        path: path.to_owned(),
-        limit: LARGEST_FILE,
-    };
-    let metadata = fs::metadata(path).map_err(unreadable)?;
-    if metadata.is_dir() {
+    if fs::metadata(path).map_err(unreadable)?.is_dir() {
         return Err(SceneError::Directory {
             path: path.to_owned(),
         });
-    }
-    if metadata.len() > LARGEST_FILE {
-        return Err(too_large());
     }
     let mut bytes = Vec::new();
     fs::File::open(path)
         .and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes))
         .map_err(unreadable)?;
     if bytes.len() as u64 > LARGEST_FILE {
-        return Err(too_large());
+        return Err(SceneError::TooLarge {
+            path: path.to_owned(),
+            limit: LARGEST_FILE,
+        });
     }
     Ok(bytes)
 }
@@ -112,13 +102,10 @@ pub fn parse(
     let origins = origins(path_for_messages, text, options);
     let report = Report::default();
     let mut root = parse_tree(&origins, text)?;
-    let settings: Vec<Setting> = options
-        .set
-        .iter()
-        .enumerate()
-        .filter_map(|(i, (key, value))| Setting::parse(&report, i + 1, key, value))
-        .collect();
-    for setting in settings.iter().filter(|s| s.is_for_panels()) {
+    let set = options.set.iter().enumerate();
+    let settings = set.filter_map(|(i, (key, value))| Setting::parse(&report, i + 1, key, value));
+    let (for_panels, settings): (Vec<_>, Vec<_>) = settings.partition(Setting::is_for_panels);
+    for setting in for_panels {
         setting.apply(&report, &mut root);
     }
     let panels = panels(&report, &mut root);
@@ -128,42 +115,27 @@ pub fn parse(
     if let Some(panel) = chosen {
         overlay::merge(&mut asked, &panel.over);
     }
-    for setting in settings.iter().filter(|s| !s.is_for_panels()) {
+    for setting in settings {
         setting.apply(&report, &mut asked);
     }
     if let Some(name) = &options.finder {
-        let place = Place {
-            origin: origins.texts.len() - 1,
-            start: 0,
-            end: name.len(),
-        };
+        let place = Place::new(origins.texts.len() - 1, 0..name.len());
         overlay::use_finder(&mut asked, place, name);
     }
-    let parts = build::scene(&report, base_dir, &asked);
+    let source = Source {
+        path: path_for_messages.to_owned(),
+        text: text.to_owned(),
+        set: options.set.clone(),
+    };
+    let panel = chosen.map(|panel| panel.name.clone());
+    let scene = build::scene(&report, base_dir, &asked, source, panel);
     if options.set.is_empty() {
         check_others(&report, base_dir, root, &panels, chosen);
     }
-    match (report.first(), parts) {
-        (None, Some(parts)) => Ok(Scene {
-            source: Source {
-                path: path_for_messages.to_owned(),
-                text: text.to_owned(),
-                set: options.set.clone(),
-            },
-            panel: chosen.map(|panel| panel.name.clone()),
-            camera: parts.look.camera,
-            image: parts.look.image,
-            materials: parts.look.materials,
-            objects: parts.objects,
-            lights: parts.lights,
-            environment: parts.look.environment,
-            truth: parts.look.truth,
-        }),
-        (Some(complaint), _) => Err(invalid(&origins, complaint)),
-        (None, None) => Err(invalid(
-            &origins,
-            Complaint::new(START, "the file holds no scene"),
-        )),
+    let unread = || Complaint::new(Place::new(0, 0..0), "the file holds no scene", None);
+    match (report.first(), scene) {
+        (None, Some(scene)) => Ok(scene),
+        (complaint, _) => Err(invalid(&origins, complaint.unwrap_or_else(unread))),
     }
 }
 
@@ -175,22 +147,12 @@ pub fn panel_names(path_for_messages: &str, text: &str) -> Result<Vec<String>, S
     let origins = origins(path_for_messages, text, &Overrides::default());
     let report = Report::default();
     let mut root = parse_tree(&origins, text)?;
-    let names = panels(&report, &mut root)
-        .into_iter()
-        .map(|panel| panel.name)
-        .collect();
-    match report.first() {
-        Some(complaint) => Err(invalid(&origins, complaint)),
-        None => Ok(names),
-    }
+    let panels = panels(&report, &mut root).into_iter();
+    let names = panels.map(|panel| panel.name).collect();
+    report
+        .first()
+        .map_or(Ok(names), |complaint| Err(invalid(&origins, complaint)))
 }
-
-/// The first byte of the file.
-const START: Place = Place {
-    origin: 0,
-    start: 0,
-    end: 0,
-};
 
 /// The file, the settings, the panel, and last the finder.
 fn origins(path: &str, text: &str, options: &Overrides) -> Origins {
@@ -206,18 +168,13 @@ fn origins(path: &str, text: &str, options: &Overrides) -> Origins {
 
 fn parse_tree(origins: &Origins, text: &str) -> Result<Table, SceneError> {
     tree::parse(text, 0, 0).map_err(|error| {
-        let span = error.span().unwrap_or(0..0);
-        let place = Place {
-            origin: 0,
-            start: span.start,
-            end: span.end,
-        };
+        let place = Place::new(0, error.span().unwrap_or(0..0));
         let words = error.message().trim().replace('\n', ", ");
         let (message, expected) = match words.split_once(", expected ") {
             Some((message, expected)) => (message.to_owned(), expected.to_owned()),
             None => (words, "TOML".to_owned()),
         };
-        invalid(origins, Complaint::new(place, message).expected(expected))
+        invalid(origins, Complaint::new(place, message, Some(expected)))
     })
 }
 
@@ -240,51 +197,52 @@ const TABLES: &[&str] = &["camera", "materials", "environment", "truth"];
 
 /// Takes the panels out of the document.
 fn panels(report: &Report, root: &mut Table) -> Vec<Panel> {
-    let Some(index) = root.entries.iter().position(|e| e.key == "panel") else {
+    let Some(node) = root.remove("panel") else {
         return Vec::new();
     };
-    let node = root.entries.remove(index).node;
-    let expected = "[[panel]] tables";
-    let Some(nodes) = report.list("panel", &node, expected) else {
-        return Vec::new();
+    let item = Item {
+        report,
+        path: "panel".to_owned(),
+        node: &node,
     };
+    let nodes = item.nodes("[[panel]] tables").unwrap_or_default();
     let mut panels: Vec<Panel> = Vec::with_capacity(nodes.len());
     for node in nodes {
-        let Some(panel) = panel(report, node) else {
+        let Some(panel) = panel(Item {
+            node,
+            ..item.clone()
+        }) else {
             continue;
         };
         if panels.iter().any(|other| other.name == panel.name) {
             let message = format!("the panel name \"{}\" is used twice", panel.name);
-            report.add(Complaint::new(panel.name_place, message).expected("a name of its own"));
+            report.fail::<()>(panel.name_place, message, "a name of its own");
         }
         panels.push(panel);
     }
     panels
 }
 
-fn panel(report: &Report, node: &Node) -> Option<Panel> {
-    let mut keys = vec!["name"];
-    keys.extend(build::IMAGE_KEYS);
-    keys.extend(TABLES);
-    let fields = Fields::open(report, "panel", node, &keys)?;
-    let name = fields.required("name", "name = \"…\"", |what, node| {
-        report.text(what, node).map(|name| (name, node.place))
+fn panel(item: Item<'_>) -> Option<Panel> {
+    let place = item.node.place;
+    let keys = [&["name"], build::IMAGE_KEYS, TABLES].concat();
+    let fields = Fields::open(item, &keys)?;
+    let name = fields.required("name", "name = \"…\"", |item| {
+        Some((item.text()?, item.node.place))
     });
     let mut over = Table::default();
     let mut image = Table::default();
     for entry in &fields.table.entries {
-        if TABLES.contains(&entry.key.as_str()) {
-            over.entries.push(entry.clone());
-        } else if build::IMAGE_KEYS.contains(&entry.key.as_str()) {
-            image.entries.push(entry.clone());
+        let key = entry.key.as_str();
+        if TABLES.contains(&key) {
+            over.put(entry.clone());
+        } else if build::IMAGE_KEYS.contains(&key) {
+            image.put(entry.clone());
         }
     }
     if !image.entries.is_empty() {
-        over.entries.push(Entry {
-            key: "image".to_owned(),
-            key_place: node.place,
-            node: Node::new(node.place, Value::Table(image)),
-        });
+        let image = Node::new(place, Value::Table(image));
+        over.put(Entry::new("image", place, image));
     }
     name.map(|(name, name_place)| Panel {
         name: name.to_owned(),
@@ -298,11 +256,7 @@ fn choose<'a>(report: &Report, panels: &'a [Panel], options: &Overrides) -> Opti
     let found = panels.iter().find(|panel| panel.name == *name);
     found.or_else(|| {
         let names: Vec<&str> = panels.iter().map(|panel| panel.name.as_str()).collect();
-        let place = Place {
-            origin: options.set.len() + 1,
-            start: 0,
-            end: name.len(),
-        };
+        let place = Place::new(options.set.len() + 1, 0..name.len());
         report.unknown(place, format!("there is no panel \"{name}\""), name, &names)
     })
 }
@@ -325,12 +279,11 @@ fn check_others(
         let mut table = root.clone();
         if let Some(panel) = variant {
             // Shapes and lights are the same in every panel and have been checked.
-            table
-                .entries
-                .retain(|e| e.key != "object" && e.key != "light");
+            table.remove("object");
+            table.remove("light");
             overlay::merge(&mut table, &panel.over);
         }
-        build::scene(&findings, base_dir, &table);
+        build::scene(&findings, base_dir, &table, Source::default(), None);
         report.absorb(findings, |c| variant.is_some() || !c.missing);
     }
 }

@@ -6,9 +6,9 @@ use std::sync::Arc;
 use glam::DVec3;
 use num_rational::BigRational;
 
-use super::fields::{Complaint, Fields, Report};
+use super::fields::{Fields, Item, Report, every};
 use super::objects::SHAPES;
-use super::tree::{Node, Place, Value};
+use super::tree::{Entry, Node, Place, Value};
 use super::{FinderChoice, Implicit};
 use crate::field::expression::{
     self, Expression, ExpressionError, Parameter, check_name, parse_constant, rational,
@@ -26,48 +26,34 @@ const MOST_STEPS: u32 = 1_000_000;
 /// As many characters of an expression as a message shows.
 const SHOWN: usize = 40;
 
-const KEYS: [&str; 5] = ["inside", "parameters", "closed", "finder", "steps"];
+pub(super) const KEYS: [&str; 5] = ["inside", "parameters", "closed", "finder", "steps"];
 const BOX: &str = "[[x, y, z], [x, y, z]], the lower and the upper corner of a box";
 
 /// Reads `{ implicit = … }`.
-pub(super) fn read(report: &Report, node: &Node, default: &DefaultFinder) -> Option<Implicit> {
-    let mut keys = SHAPES.to_vec();
-    keys.extend(KEYS);
-    let fields = Fields::open(report, "object.shape", node, &keys)?;
+pub(super) fn read(item: Item<'_>, default: &DefaultFinder) -> Option<Implicit> {
+    let fields = Fields::open(item, &[SHAPES, &KEYS].concat())?;
     let (_, written) = fields.exactly_one(SHAPES)?;
-    let surface = match report.text("object.shape.implicit", written) {
-        Some(text) => named::find(text),
-        None => return None,
-    };
-    let parameters = fields.optional("parameters", Vec::new(), |what, node| {
-        parameters(report, what, node, surface)
-    });
+    let surface = named::find(written.text()?);
+    let parameters = fields.optional("parameters", Vec::new(), |item| parameters(&item, surface));
     let field = parameters.and_then(|parameters| match surface {
         Some(surface) => named_field(&fields, surface, &parameters),
-        None => read_field(report, written, &parameters),
+        None => read_field(&written, &parameters),
     });
     let inside = match surface {
         Some(surface) => {
             let half = DVec3::splat(surface.half_width);
-            fields.optional("inside", [-half, half], |what, node| {
-                clip_box(report, what, node)
-            })
+            fields.optional("inside", [-half, half], |item| clip_box(&item))
         }
         // A field that could not be read may be a misspelt name, which has a box.
         None if field.is_none() && fields.get("inside").is_none() => None,
-        None => fields.required("inside", BOX, |what, node| clip_box(report, what, node)),
+        None => fields.required("inside", BOX, |item| clip_box(&item)),
     };
-    let closed = fields.optional("closed", false, |what, node| match node.value {
+    let closed = fields.optional("closed", false, |item| match item.node.value {
         Value::Bool(closed) => Some(closed),
-        _ => report.wrong_type(what, node, "true or false"),
+        _ => item.wrong_type("true or false"),
     });
-    let finder = fields.optional("finder", *default, |what, node| {
-        let finder = report.choice(what, node, FinderChoice::NAMES)?;
-        Some((finder, Some(node.place)))
-    });
-    let steps = fields.optional("steps", STEPS, |what, node| {
-        report.count(what, node, 1..=MOST_STEPS)
-    });
+    let finder = fields.optional("finder", *default, |item| item.finder());
+    let steps = fields.optional("steps", STEPS, |item| item.integer(1..=MOST_STEPS));
     let (finder, chosen_at) = finder?;
     let (mut field, mut inside, closed) = (field?, inside?, closed?);
     if closed && let Some(capped) = field.capped(&inside) {
@@ -84,57 +70,46 @@ pub(super) fn read(report: &Report, node: &Node, default: &DefaultFinder) -> Opt
         finder,
         steps: steps?,
     };
-    check(report, &implicit, written, chosen_at)?;
+    check(&implicit, &written, chosen_at)?;
     Some(implicit)
 }
 
 /// What only field, box and finder together can have wrong.
-fn check(
-    report: &Report,
-    implicit: &Implicit,
-    written: &Node,
-    chosen_at: Option<Place>,
-) -> Option<()> {
+fn check(implicit: &Implicit, written: &Item<'_>, chosen_at: Option<Place>) -> Option<()> {
     let polynomial = implicit.field.polynomial.is_some();
     if !polynomial && over_box(&implicit.field.tape, &implicit.inside).undefined {
         let message = "object.shape.implicit is defined nowhere in its box";
         let expected = "a field that has values in \"inside\": no root of a negative number, \
                         logarithm of zero or division by zero everywhere";
-        return report.fail(Complaint::new(written.place, message.to_owned()).expected(expected));
+        return written.fail(message, expected);
     }
     if implicit.finder != FinderChoice::Polynomial || polynomial {
         return Some(());
     }
-    if implicit.closed {
-        let message =
-            "the finder \"polynomial\" for a closed surface, whose caps are no polynomial";
-        let expected = "\"auto\", \"interval\", \"sphere-trace\" or \"sign-change\"";
-        let place = chosen_at.unwrap_or(written.place);
-        return report.fail(Complaint::new(place, message.to_owned()).expected(expected));
-    }
-    // The finder may be asked for far from the field.
-    let text = report.text("object.shape.implicit", written)?;
-    let shown: String = text.chars().take(SHOWN).collect();
-    let rest = if shown.len() < text.len() { "…" } else { "" };
-    let message =
-        format!("the finder \"polynomial\" for a field that is no polynomial: {shown}{rest}");
+    let problem = if implicit.closed {
+        "a closed surface, whose caps are no polynomial".to_owned()
+    } else {
+        // The finder may be asked for far from the field.
+        let text = written.text()?;
+        let shown: String = text.chars().take(SHOWN).collect();
+        let rest = if shown.len() < text.len() { "…" } else { "" };
+        format!("a field that is no polynomial: {shown}{rest}")
+    };
+    let message = format!("the finder \"polynomial\" for {problem}");
     let expected = "\"auto\", \"interval\", \"sphere-trace\" or \"sign-change\"";
-    report.fail(Complaint::new(chosen_at.unwrap_or(written.place), message).expected(expected))
+    let place = chosen_at.unwrap_or(written.node.place);
+    written.report.fail(place, message, expected)
 }
 
 /// The field of an expression. What looks like a name of a surface is taken for a misspelt one.
-fn read_field(report: &Report, node: &Node, parameters: &[Parameter]) -> Option<Expression> {
-    let text = report.text("object.shape.implicit", node)?;
+fn read_field(item: &Item<'_>, parameters: &[Parameter]) -> Option<Expression> {
+    let text = item.text()?;
     let known = |p: &Parameter| p.name == text;
     if check_name(text).is_ok() && !parameters.iter().any(known) {
         let names: Vec<&str> = SURFACES.iter().map(|surface| surface.name).collect();
-        let message = format!("object.shape.implicit is \"{text}\"");
-        return report.unknown(node.place, message, text, &names);
+        return item.unknown(format!("{} is \"{text}\"", item.path), text, &names);
     }
-    match expression::parse(text, parameters) {
-        Ok(field) => Some(field),
-        Err(error) => complain(report, node, text, &error),
-    }
+    expression::parse(text, parameters).map_or_else(|error| complain(item, text, &error), Some)
 }
 
 /// The field of a named surface; what can be wrong with it lies in its parameters.
@@ -148,131 +123,107 @@ fn named_field(
         Err(error) => {
             let place = fields.get("parameters").map_or(fields.place, |n| n.place);
             let message = format!("with these parameters of {}: {error}", surface.name);
-            fields.report.fail(Complaint::new(place, message))
+            fields.report.complain(place, message, None)
         }
     }
 }
 
-fn parameters(
-    report: &Report,
-    what: &str,
-    node: &Node,
-    surface: Option<&NamedSurface>,
-) -> Option<Vec<Parameter>> {
-    let Value::Table(table) = &node.value else {
-        return report.wrong_type(what, node, "a table of names and values");
+fn parameters(item: &Item<'_>, surface: Option<&NamedSurface>) -> Option<Vec<Parameter>> {
+    let Value::Table(table) = &item.node.value else {
+        return item.wrong_type("a table of names and values");
     };
-    let mut read: Vec<Option<Parameter>> = Vec::with_capacity(table.entries.len());
     let mut known: Vec<Parameter> = Vec::with_capacity(table.entries.len());
-    for entry in &table.entries {
-        let allowed = match surface {
-            Some(surface) => {
-                let names: Vec<&str> = surface.parameters.iter().map(|(name, _)| *name).collect();
-                let message = format!("\"{}\" is no parameter of {}", entry.key, surface.name);
-                match names.contains(&entry.key.as_str()) {
-                    true => Some(()),
-                    false => report.unknown(entry.key_place, message, &entry.key, &names),
-                }
-            }
-            None => match check_name(&entry.key) {
-                Ok(()) => Some(()),
-                Err(problem) => {
-                    let error = ExpressionError::from(problem);
-                    let complaint = Complaint::new(entry.key_place, error.to_string());
-                    report.fail(complaint.expected(error.expected.unwrap_or_default()))
-                }
-            },
+    let read = table.entries.iter().map(|entry| {
+        let allowed = check_parameter(item.report, entry, surface);
+        let number = Item {
+            path: format!("{}.{}", item.path, entry.key),
+            node: &entry.node,
+            ..*item
         };
-        let what = format!("{what}.{}", entry.key);
-        let value = value(report, &what, &entry.node, &known);
+        let value = value(&number, &known);
         let parameter = allowed.and(value).map(|value| Parameter {
             name: entry.key.clone(),
             value,
         });
         known.extend(parameter.clone());
-        read.push(parameter);
+        parameter
+    });
+    every(read)
+}
+
+/// A named surface has its own parameters; those of an expression must not mean something already.
+fn check_parameter(report: &Report, entry: &Entry, surface: Option<&NamedSurface>) -> Option<()> {
+    let (key, place) = (&entry.key, entry.key_place);
+    let Some(surface) = surface else {
+        return check_name(key).map_or_else(
+            |problem| {
+                let error = ExpressionError::from(problem);
+                report.complain(place, error.to_string(), error.expected)
+            },
+            Some,
+        );
+    };
+    let names: Vec<&str> = surface.parameters.iter().map(|(name, _)| *name).collect();
+    if names.contains(&key.as_str()) {
+        return Some(());
     }
-    read.into_iter().collect()
+    let message = format!("\"{key}\" is no parameter of {}", surface.name);
+    report.unknown(place, message, key, &names)
 }
 
 /// A number as written, or a constant expression of numbers and parameters above.
-fn value(report: &Report, what: &str, node: &Node, known: &[Parameter]) -> Option<BigRational> {
-    match &node.value {
+fn value(item: &Item<'_>, known: &[Parameter]) -> Option<BigRational> {
+    match &item.node.value {
         Value::Integer(number) => Some(BigRational::from_integer((*number).into())),
         Value::Float(_) => {
-            report.number(what, node)?;
-            let plain = node.written.as_ref().map(|text| text.replace('_', ""));
-            plain.and_then(|text| rational(&text)).or_else(|| {
-                let message = format!("{what} is beyond all measure");
-                report.fail(Complaint::new(node.place, message).expected("a number"))
-            })
+            item.number()?;
+            let written = item.node.written.as_ref();
+            let exact = written.and_then(|text| rational(&text.replace('_', "")));
+            exact.or_else(|| item.wrong("beyond all measure", "a number"))
         }
-        Value::Text(text) => match parse_constant(text, known) {
-            Ok(value) => Some(value),
-            Err(error) => complain(report, node, text, &error),
-        },
-        _ => report.wrong_type(what, node, "a number, or a string such as \"9/80\""),
+        Value::Text(text) => {
+            parse_constant(text, known).map_or_else(|error| complain(item, text, &error), Some)
+        }
+        _ => item.wrong_type("a number, or a string such as \"9/80\""),
     }
 }
 
 /// Passes on what is wrong with an expression, at its place in the file.
-fn complain<T>(report: &Report, node: &Node, text: &str, error: &ExpressionError) -> Option<T> {
-    let place = inner(node, text, &error.span);
+fn complain<T>(item: &Item<'_>, text: &str, error: &ExpressionError) -> Option<T> {
+    let place = inner(item.node, text, &error.span);
     if error.names.is_empty() {
-        let mut complaint = Complaint::new(place, error.to_string());
-        complaint.expected.clone_from(&error.expected);
-        return report.fail(complaint);
+        let expected = error.expected.clone();
+        return item.report.complain(place, error.to_string(), expected);
     }
     let names: Vec<&str> = error.names.iter().map(String::as_str).collect();
     let name = text.get(error.span.clone()).unwrap_or("");
-    report.unknown(place, error.to_string(), name, &names)
+    item.report.unknown(place, error.to_string(), name, &names)
 }
 
 /// Where a part of a string stands in its origin: the whole string where escapes or trimmed line
 /// ends keep its bytes from being those of the origin.
 fn inner(node: &Node, text: &str, span: &Range<usize>) -> Place {
     let written = node.written.as_deref().unwrap_or("");
-    let multi_line = [
-        "\"\"\"\r\n",
-        "'''\r\n",
-        "\"\"\"\n",
-        "'''\n",
-        "\"\"\"",
-        "'''",
-    ];
-    let openings = multi_line.iter().chain(&["\"", "'", ""]);
-    let same = |opening: &&&str| {
-        let rest = written.strip_prefix(**opening);
-        let closing = opening.trim_end();
-        rest.and_then(|rest| rest.strip_suffix(closing)) == Some(text)
-    };
-    match openings.into_iter().find(same) {
-        Some(opening) => Place {
-            start: node.place.start + opening.len() + span.start,
-            end: node.place.start + opening.len() + span.end,
-            ..node.place
-        },
-        None => node.place,
+    // No quotes about a bare word, else one or three on each side, and perhaps a line end after three.
+    let around = written.len().saturating_sub(text.len());
+    let closing = if around < 6 { around / 2 } else { 3 };
+    let opening = around - closing;
+    let same = written.get(opening..opening + text.len()) == Some(text);
+    if !same || !matches!(around, 0 | 2 | 6..=8) {
+        return node.place;
     }
+    let start = node.place.start + opening;
+    Place::new(node.place.origin, start + span.start..start + span.end)
 }
 
-fn clip_box(report: &Report, what: &str, node: &Node) -> Option<[DVec3; 2]> {
-    let nodes = report.list(what, node, BOX)?;
-    let [low, high] = nodes else {
-        let message = format!("{what} has {} entries", nodes.len());
-        return report.fail(Complaint::new(node.place, message).expected(BOX));
-    };
-    let low = report.vector(&format!("{what}[0]"), low);
-    let high = report.vector(&format!("{what}[1]"), high);
+fn clip_box(item: &Item<'_>) -> Option<[DVec3; 2]> {
+    let [low, high] = item.array(BOX)?.map(|corner| corner.vector());
     let (low, high) = (low?, high?);
-    let fail = |words: &str| {
-        report.fail(Complaint::new(node.place, format!("{what} is {words}")).expected(BOX))
-    };
     if !low.cmplt(high).all() {
-        return fail("a box without inside");
+        return item.wrong("a box without inside", BOX);
     }
     if !(high - low).is_finite() {
-        return fail("a box beyond all measure");
+        return item.wrong("a box beyond all measure", BOX);
     }
     Some([low, high])
 }

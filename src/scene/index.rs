@@ -1,123 +1,90 @@
 //! Reading refractive indices.
 
-use super::fields::{Complaint, Fields};
-use super::names::{GLASSES, METALS};
+use super::fields::{Fields, Item, every, one_of};
 use super::spectra::Spectra;
-use super::tree::{Node, Value};
+use super::tree::Value;
 use crate::declare::Role;
-use crate::spectrum::ior::{RefractiveIndex, named_glass, named_metal};
+use crate::spectrum::ior::{RefractiveIndex, glass_names, metal_names, named_glass, named_metal};
 use crate::spectrum::{NM_MAX, NM_MIN};
 
 /// Keys of a metal's table.
 pub(super) const METAL_KEYS: [&str; 2] = ["n", "k"];
+/// Keys of a glass's table: it has one of them.
+pub(super) const GLASS_KEYS: &[&str] = &["ior", "cauchy", "sellmeier"];
 /// What a metal may be.
 pub(super) const METAL: [&str; 2] = ["the name of a metal", "{ n = spectrum, k = spectrum }"];
 
 /// Reads n + ik of a metal by its name.
-pub(super) fn metal(
-    spectra: &Spectra<'_>,
-    path: &str,
-    node: &Node,
-    name: &str,
-) -> Option<RefractiveIndex> {
+pub(super) fn metal(item: &Item<'_>, name: &str) -> Option<RefractiveIndex> {
     named_metal(name).or_else(|| {
-        let message = format!("{path} names the unknown metal \"{name}\"");
-        spectra.report.unknown(node.place, message, name, &METALS)
+        let message = format!("{} names the unknown metal \"{name}\"", item.path);
+        item.unknown(message, name, &metal_names().collect::<Vec<_>>())
     })
 }
 
 /// Reads n + ik of a metal from a table.
 pub(super) fn complex(spectra: &Spectra<'_>, fields: &Fields<'_>) -> Option<RefractiveIndex> {
-    let n = fields.required("n", "n = spectrum", |what, node| {
-        spectra.spectrum(what, node, Role::Index)
-    });
-    let k = fields.required("k", "k = spectrum", |what, node| {
-        spectra.spectrum(what, node, Role::Extinction)
+    let n = fields.required("n", "n = spectrum", |n| spectra.spectrum(&n, Role::Index));
+    let k = fields.required("k", "k = spectrum", |k| {
+        spectra.spectrum(&k, Role::Extinction)
     });
     Some(RefractiveIndex::Complex { n: n?, k: k? })
 }
 
 /// Reads n of a glass.
-pub(super) fn glass(spectra: &Spectra<'_>, path: &str, node: &Node) -> Option<RefractiveIndex> {
-    let report = spectra.report;
-    match &node.value {
-        Value::Text(name) => match named_glass(name) {
-            Some(index) => Some(index),
-            None => {
-                let message = format!("{path} names the unknown glass \"{name}\"");
-                report.unknown(node.place, message, name, &GLASSES)
-            }
-        },
+pub(super) fn glass(item: Item<'_>) -> Option<RefractiveIndex> {
+    match &item.node.value {
+        Value::Text(name) => named_glass(name).or_else(|| {
+            let message = format!("{} names the unknown glass \"{name}\"", item.path);
+            item.unknown(message, name, &glass_names().collect::<Vec<_>>())
+        }),
         Value::Table(_) => {
-            let kinds = &["ior", "cauchy", "sellmeier"];
-            let fields = Fields::open(report, path, node, kinds)?;
-            let (kind, inner) = fields.exactly_one(kinds)?;
-            let path = fields.path(kind);
+            let fields = Fields::open(item, GLASS_KEYS)?;
+            let (kind, item) = fields.exactly_one(GLASS_KEYS)?;
             let index = match kind {
-                "ior" => RefractiveIndex::Constant(report.number(&path, inner)?),
-                "cauchy" => cauchy(spectra, &path, inner)?,
-                _ => sellmeier(spectra, &path, inner)?,
+                "ior" => RefractiveIndex::Constant(item.number()?),
+                "cauchy" => cauchy(&item)?,
+                _ => sellmeier(item.clone())?,
             };
-            check_index(spectra, &path, inner, &index)?;
+            check_index(&item, &index)?;
             Some(index)
         }
         _ => {
-            let kinds = "the name of a glass, or a table with one of ";
-            let expected = format!("{kinds}\"ior\", \"cauchy\", \"sellmeier\"");
-            report.wrong_type(path, node, &expected)
+            let keys = one_of(GLASS_KEYS);
+            item.wrong_type(format!("the name of a glass, or a table with {keys}"))
         }
     }
 }
 
-fn cauchy(spectra: &Spectra<'_>, path: &str, node: &Node) -> Option<RefractiveIndex> {
-    let report = spectra.report;
+fn cauchy(item: &Item<'_>) -> Option<RefractiveIndex> {
     let expected = "[A, B] or [A, B, C] for wavelengths in µm";
-    let nodes = report.list(path, node, expected)?;
-    if !(2..=3).contains(&nodes.len()) {
-        let message = format!("{path} has {} entries", nodes.len());
-        return report.fail(Complaint::new(node.place, message).expected(expected));
+    let entries = item.list(expected)?;
+    if !(2..=3).contains(&entries.len()) {
+        let message = format!("{} has {} entries", item.path, entries.len());
+        return item.fail(message, expected);
     }
-    let numbers: Option<Vec<f64>> = nodes
-        .iter()
-        .enumerate()
-        .map(|(i, node)| report.number(&format!("{path}[{i}]"), node))
-        .collect();
-    numbers.map(RefractiveIndex::Cauchy)
+    every(entries.iter().map(Item::number)).map(RefractiveIndex::Cauchy)
 }
 
-fn sellmeier(spectra: &Spectra<'_>, path: &str, node: &Node) -> Option<RefractiveIndex> {
-    let report = spectra.report;
-    let fields = Fields::open(report, path, node, &["b", "c"])?;
-    let b = fields.required("b", "b = [B1, B2, B3]", |what, node| {
-        report.numbers(what, node)
-    });
-    let c = fields.required("c", "c = [C1, C2, C3] in µm²", |what, node| {
-        report.numbers(what, node)
-    });
-    Some(RefractiveIndex::Sellmeier { b: b?, c: c? })
+fn sellmeier(item: Item<'_>) -> Option<RefractiveIndex> {
+    let fields = Fields::open(item, &["b", "c"])?;
+    let b = fields.required("b", "b = [B1, B2, B3]", |b| b.numbers());
+    let c = fields.required("c", "c = [C1, C2, C3] in µm²", |c| c.numbers());
+    Some(RefractiveIndex::sellmeier(b?, c?))
 }
 
 /// n must be finite and at least 1 wherever light is seen.
 ///
 /// Between the resonances (λ² = C) each term of the formulas is monotonic in λ, so with no
 /// resonance among the visible wavelengths every nanometre is close enough a look.
-fn check_index(
-    spectra: &Spectra<'_>,
-    path: &str,
-    node: &Node,
-    index: &RefractiveIndex,
-) -> Option<()> {
+fn check_index(item: &Item<'_>, index: &RefractiveIndex) -> Option<()> {
     let expected = "a finite index of refraction of at least 1 at all visible wavelengths";
-    let fail = |message: String| {
-        spectra
-            .report
-            .fail(Complaint::new(node.place, message).expected(expected))
-    };
+    let path = &item.path;
     if let RefractiveIndex::Constant(n) = index {
         return if *n >= 1.0 {
             Some(())
         } else {
-            fail(format!("{path} is {n}"))
+            item.wrong(n, expected)
         };
     }
     if let RefractiveIndex::Sellmeier { b, c } = index {
@@ -128,7 +95,7 @@ fn check_index(
             .find(|(b, c)| **b != 0.0 && micrometres.contains(&c.sqrt()));
         if let Some((_, c)) = resonance {
             let nm = c.sqrt() * 1000.0;
-            return fail(format!("{path} has a resonance at {nm:.1} nm"));
+            return item.fail(format!("{path} has a resonance at {nm:.1} nm"), expected);
         }
     }
     for whole in NM_MIN as u32..=NM_MAX as u32 {
@@ -139,7 +106,7 @@ fn check_index(
             } else {
                 format!("n = {n}")
             };
-            return fail(format!("{path} has {value} at {whole} nm"));
+            return item.fail(format!("{path} has {value} at {whole} nm"), expected);
         }
     }
     Some(())

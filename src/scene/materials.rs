@@ -2,11 +2,10 @@
 
 use std::sync::LazyLock;
 
-use super::fields::{Complaint, Fields};
-use super::names::one_of;
+use super::fields::{Fields, Item, every, one_of};
 use super::quantities;
 use super::spectra::Spectra;
-use super::tree::{Node, Value};
+use super::tree::{Node, Table, Value};
 use super::{Emission, Material, Named, Sides, Surface};
 use crate::declare::{self, Declaration, Parameter, Role};
 use crate::material::MaterialKind;
@@ -21,7 +20,10 @@ pub(super) struct Materials {
 }
 
 /// The keys that say what a material is, in the order in which messages list them.
-static KINDS: LazyLock<Vec<&str>> = LazyLock::new(|| distinct(MaterialKind::KEYS));
+static KINDS: LazyLock<Vec<&str>> = LazyLock::new(|| {
+    let keys: Vec<&str> = declarations().map(|own| own.main.key).collect();
+    distinct(&keys)
+});
 /// All keys of a material.
 static KEYS: LazyLock<Vec<&str>> = LazyLock::new(|| {
     let beside = declarations().flat_map(|own| own.beside).map(|own| own.key);
@@ -66,64 +68,50 @@ pub(super) fn companions() -> Vec<(&'static str, &'static str)> {
 }
 
 /// Reads `[materials]`; `None` if that is no table at all.
-pub(super) fn read(spectra: &Spectra<'_>, node: Option<&Node>) -> Option<Materials> {
-    let Some(node) = node else {
-        return Some(Materials {
-            names: Vec::new(),
-            checked: Some(Vec::new()),
-        });
+pub(super) fn read(spectra: &Spectra<'_>, item: Option<Item<'_>>) -> Option<Materials> {
+    let empty = Table::default();
+    let table = match item.as_ref().map(|item| (item, &item.node.value)) {
+        None => &empty,
+        Some((_, Value::Table(table))) => table,
+        Some((item, _)) => return item.wrong_type("a table of named materials"),
     };
-    let Value::Table(table) = &node.value else {
-        return spectra
-            .report
-            .wrong_type("materials", node, "a table of named materials");
-    };
-    let mut names = Vec::with_capacity(table.entries.len());
-    let mut read = Vec::with_capacity(table.entries.len());
-    for entry in &table.entries {
-        names.push(entry.key.clone());
-        read.push(
-            material(spectra, &entry.key, &entry.node).map(|value| Named {
-                name: entry.key.clone(),
-                value,
-            }),
-        );
-    }
+    let read = table.entries.iter().map(|entry| {
+        let name = entry.key.clone();
+        let item = Item {
+            report: spectra.report,
+            path: format!("materials.{name}"),
+            node: &entry.node,
+        };
+        let fields = Fields::open(item, &KEYS)?;
+        let surface = surface(spectra, &fields);
+        let emission = emission(spectra, &fields);
+        let (surface, emission) = (surface?, emission?);
+        let value = Material { surface, emission };
+        Some(Named { name, value })
+    });
     Some(Materials {
-        names,
-        checked: read.into_iter().collect(),
-    })
-}
-
-fn material(spectra: &Spectra<'_>, name: &str, node: &Node) -> Option<Material> {
-    let fields = Fields::open(spectra.report, format!("materials.{name}"), node, &KEYS)?;
-    let surface = surface(spectra, &fields);
-    let emission = emission(spectra, &fields);
-    Some(Material {
-        surface: surface?,
-        emission: emission?,
+        names: table
+            .entries
+            .iter()
+            .map(|entry| entry.key.clone())
+            .collect(),
+        checked: every(read),
     })
 }
 
 fn surface(spectra: &Spectra<'_>, fields: &Fields<'_>) -> Option<Surface> {
     let found = fields.at_most_one(&KINDS)?;
-    lonely(fields, found.map(|(key, _)| key))?;
-    let Some((key, node)) = found else {
+    lonely(fields, found.as_ref().map(|(key, _)| *key))?;
+    let Some((key, item)) = found else {
         return Some(Surface {
             kind: MaterialKind::Black,
             values: Vec::new(),
         });
     };
-    let kind = kind(key, node)?;
-    let main = main(spectra, &fields.path(key), node, kind);
-    let beside = kind.declaration().beside.iter();
-    let beside = beside.map(|own| quantities::beside(spectra, fields, own));
-    // All are read before any is missed, so that the first complaint is the first in the file.
-    let beside: Vec<_> = beside.collect();
-    let mut values = main?;
-    for own in beside {
-        values.extend(own?);
-    }
+    let kind = kind(key, item.node)?;
+    let main = main(spectra, item, kind);
+    let beside = quantities::all(spectra, fields, kind.declaration().beside);
+    let values = [main?, beside?].concat();
     Some(Surface { kind, values })
 }
 
@@ -143,12 +131,7 @@ fn kind(key: &str, node: &Node) -> Option<MaterialKind> {
 }
 
 /// Reads the main value of a kind.
-fn main(
-    spectra: &Spectra<'_>,
-    path: &str,
-    node: &Node,
-    kind: MaterialKind,
-) -> Option<Vec<declare::Value>> {
+fn main(spectra: &Spectra<'_>, item: Item<'_>, kind: MaterialKind) -> Option<Vec<declare::Value>> {
     let own = kind.declaration();
     let others = declarations().filter(|other| other.main.key == own.main.key);
     let Some(within) = own.within else {
@@ -157,21 +140,21 @@ fn main(
             Some(Parameter { key, ..other.main })
         };
         let others: Vec<_> = others.filter_map(parameter).collect();
-        return quantities::read(spectra, path, node, own.main.quantity, &others);
+        return quantities::read(spectra, item, own.main.quantity, &others);
     };
     let keys = others.flat_map(|other| {
         let keys = quantities::keys(other.main.quantity).iter().copied();
         keys.chain(other.within)
     });
     let keys: Vec<&str> = keys.collect();
-    let fields = Fields::open(spectra.report, path, node, &keys)?;
+    let fields = Fields::open(item, &keys)?;
     for key in keys.iter().filter(|key| **key != within) {
         fields.at_most_one(&[within, *key])?;
     }
     let quantity = own.main.quantity;
     let expected = format!("{within} = {}", quantities::form(quantity));
-    fields.required(within, &expected, |path, node| {
-        quantities::read(spectra, path, node, quantity, &[])
+    fields.required(within, &expected, |item| {
+        quantities::read(spectra, item, quantity, &[])
     })
 }
 
@@ -184,33 +167,26 @@ fn lonely(fields: &Fields<'_>, kind: Option<&str>) -> Option<()> {
             let value = declarations().find(|own| own.main.key == owner);
             let value = value.map_or("", |own| quantities::form(own.main.quantity));
             return fields.report.fail(
-                Complaint::new(entry.key_place, message)
-                    .expected(format!("{owner} = {value} besides")),
+                entry.key_place,
+                message,
+                format!("{owner} = {value} besides"),
             );
         }
     }
     Some(())
 }
+
 fn emission(spectra: &Spectra<'_>, fields: &Fields<'_>) -> Option<Option<Emission>> {
-    let choices = [
-        ("front", Sides::Front),
-        ("back", Sides::Back),
-        ("both", Sides::Both),
-    ];
-    let sides = fields.optional("sides", Sides::Front, |what, node| {
-        spectra.report.choice(what, node, &choices)
+    let sides = fields.optional("sides", Sides::Front, |item| {
+        item.choice(&Sides::ALL, Sides::name)
     });
     if let (None, Some(entry)) = (fields.get("emit"), fields.table.entry("sides")) {
         let message = format!("{} without emit", fields.path("sides"));
-        let names = choices.map(|(name, _)| name);
-        let expected = format!("emit = spectrum besides sides = {}", one_of(&names));
-        return spectra
-            .report
-            .fail(Complaint::new(entry.key_place, message).expected(expected));
+        let names = one_of(&Sides::ALL.map(Sides::name));
+        let expected = format!("emit = spectrum besides sides = {names}");
+        return spectra.report.fail(entry.key_place, message, expected);
     }
-    let radiance = fields.optional("emit", None, |what, node| {
-        spectra.spectrum(what, node, Role::Emission).map(Some)
-    });
+    let radiance = fields.maybe("emit", |item| spectra.spectrum(&item, Role::Emission));
     let (radiance, sides) = (radiance?, sides?);
     Some(radiance.map(|radiance| Emission { radiance, sides }))
 }

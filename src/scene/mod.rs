@@ -11,7 +11,6 @@ mod file;
 mod implicit;
 mod index;
 mod materials;
-mod names;
 mod objects;
 mod overlay;
 mod quantities;
@@ -26,7 +25,8 @@ use std::path::Path;
 
 use glam::DVec3;
 
-pub use crate::camera::{Camera, Lens, Projection};
+pub use crate::camera::{Camera, Lens, Projection, ProjectionKind};
+pub use crate::light::{Place, Source as Light};
 pub use crate::material::Surface;
 use crate::math::affine::Affine;
 pub use crate::sample::SamplerKind;
@@ -58,7 +58,7 @@ pub struct Scene {
 }
 
 /// The scene file's path and its own text, and what was laid over it, for messages and provenance.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Source {
     /// The path as it was given.
     pub path: String,
@@ -115,6 +115,11 @@ impl Scene {
         self.lay("image.seed", seed.to_string());
     }
 
+    /// The material of one of the scene's objects.
+    pub fn material_of(&self, object: &Object) -> &Material {
+        &self.materials[object.material].value
+    }
+
     fn lay(&mut self, key: &str, value: String) {
         self.source.set.retain(|(other, _)| other != key);
         self.source.set.push((key.to_owned(), value));
@@ -152,7 +157,7 @@ pub struct Image {
     pub wavelengths: Option<u32>,
 }
 
-/// What the user says about precision.
+/// The precision that a scene asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PrecisionChoice {
     /// Single where the plan can show that it suffices, else double.
@@ -161,6 +166,19 @@ pub enum PrecisionChoice {
     F32,
     /// Double precision lanes.
     F64,
+}
+
+impl PrecisionChoice {
+    pub(crate) const ALL: [Self; 3] = [Self::Auto, Self::F32, Self::F64];
+
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
 }
 
 /// A placed shape with its material.
@@ -206,21 +224,20 @@ pub enum Sides {
     Both,
 }
 
-/// A light that has no surface.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Light {
-    /// Isotropic point source.
-    Point {
-        /// Position, scene units.
-        at: DVec3,
-        /// Radiant intensity, W·sr⁻¹·nm⁻¹.
-        intensity: Spectrum,
-    },
-    /// Parallel light from infinity.
-    Directional {
-        /// Direction in which the light travels (unit).
-        direction: DVec3,
-        /// Irradiance on a surface facing the light, W·m⁻²·nm⁻¹.
-        irradiance: Spectrum,
-    },
+impl Sides {
+    pub(crate) const ALL: [Self; 3] = [Self::Front, Self::Back, Self::Both];
+
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Front => "front",
+            Self::Back => "back",
+            Self::Both => "both",
+        }
+    }
+
+    /// Whether front and back are among them.
+    pub fn front_and_back(self) -> [bool; 2] {
+        [self != Self::Back, self != Self::Front]
+    }
 }

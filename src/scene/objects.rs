@@ -4,11 +4,10 @@ use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
-use super::fields::{Complaint, Fields, Report};
+use super::fields::{Fields, Item, every, one_of};
 use super::implicit::{self, DefaultFinder};
-use super::names::one_of;
 use super::transform;
-use super::tree::{Node, Value};
+use super::tree::Value;
 use super::{Named, Object, Shape};
 use crate::math::affine::Affine;
 use crate::shape::{Length, ShapeKind};
@@ -35,71 +34,66 @@ struct Sized {
 
 /// Reads `[[object]]`. With `hidden`, the materials could not be read and are not looked up.
 pub(super) fn read(
-    report: &Report,
-    node: Option<&Node>,
+    item: Option<Item<'_>>,
     materials: &[String],
     hidden: bool,
     finder: &DefaultFinder,
 ) -> Option<Vec<Named<Object>>> {
-    let Some(node) = node else {
+    let Some(item) = item else {
         return Some(Vec::new());
     };
-    let nodes = report.list("object", node, "[[object]] tables")?;
+    let nodes = item.nodes("[[object]] tables")?;
     let indices: HashMap<&str, usize> = materials
         .iter()
         .enumerate()
         .map(|(i, name)| (name.as_str(), i))
         .collect();
-    let find = |what: &str, node: &Node| {
-        let name = report.text(what, node)?;
+    let find = |item: Item<'_>| {
+        let name = item.text()?;
         if hidden {
             return Some(0);
         }
         indices.get(name).copied().or_else(|| {
             let names: Vec<&str> = materials.iter().map(String::as_str).collect();
             let message = format!("the material \"{name}\" is not defined");
-            report.unknown(node.place, message, name, &names)
+            item.unknown(message, name, &names)
         })
     };
     let mut used = HashSet::new();
-    let mut objects = Vec::with_capacity(nodes.len());
-    for (index, node) in nodes.iter().enumerate() {
-        objects.push(object(report, node, index, finder, &find, &mut used));
-    }
-    objects.into_iter().collect()
+    let nodes = nodes.iter().enumerate();
+    every(nodes.map(|(index, node)| {
+        let item = Item {
+            node,
+            ..item.clone()
+        };
+        object(item, index, finder, &find, &mut used)
+    }))
 }
 
 fn object(
-    report: &Report,
-    node: &Node,
+    item: Item<'_>,
     index: usize,
     finder: &DefaultFinder,
-    find: &impl Fn(&str, &Node) -> Option<usize>,
+    find: &impl Fn(Item<'_>) -> Option<usize>,
     used: &mut HashSet<String>,
 ) -> Option<Named<Object>> {
-    let fields = Fields::open(report, "object", node, KEYS)?;
-    let name = fields.optional("name", None, |what, node| {
-        let name = report.text(what, node)?.to_owned();
+    let fields = Fields::open(item, KEYS)?;
+    let name = fields.maybe("name", |item| {
+        let name = item.text()?.to_owned();
         if used.insert(name.clone()) {
-            return Some(Some(name));
+            return Some(name);
         }
         let message = format!("the object name \"{name}\" is used twice");
-        report.fail(Complaint::new(node.place, message).expected("a name of its own"))
+        item.fail(message, "a name of its own")
     });
-    let sized = fields.required("shape", &one_of(SHAPES), |_, node| {
-        shape(report, node, finder)
-    });
+    let sized = fields.required("shape", &one_of(SHAPES), |item| shape(item, finder));
     let material = fields.required("material", "the name of a material", find);
-    let to_world = fields.optional("transform", None, |what, node| {
-        transform::read(report, what, node).map(Some)
-    });
+    let to_world = fields.maybe("transform", |item| transform::read(&item));
     let sized = sized?;
     let to_world = place(to_world?, &sized);
-    let written = fields
-        .get("transform")
-        .or(fields.get("shape"))
-        .unwrap_or(node);
-    transform::check(report, written.place, &to_world)?;
+    let written = fields.get("transform").or(fields.get("shape"));
+    let written = written.map_or(fields.place, |node| node.place);
+    transform::check(fields.report, written, &to_world)?;
     let name = name?.unwrap_or_else(|| format!("{} #{index}", sized.shape.name()));
     Some(Named {
         name,
@@ -127,49 +121,41 @@ fn place(transform: Option<Affine>, sized: &Sized) -> Affine {
         .unwrap_or(Affine::IDENTITY)
 }
 
-fn shape(report: &Report, node: &Node, finder: &DefaultFinder) -> Option<Sized> {
-    match &node.value {
+fn shape(item: Item<'_>, finder: &DefaultFinder) -> Option<Sized> {
+    match &item.node.value {
         Value::Text(_) => {
-            let choices: Vec<_> = ShapeKind::ALL
-                .iter()
-                .map(|kind| (kind.name(), *kind))
-                .collect();
-            let kind = report.choice("object.shape", node, &choices)?;
-            Some(plain(Shape::Canonical(kind), DVec3::ONE))
+            let kind = item.choice(ShapeKind::ALL, ShapeKind::name)?;
+            Some(plain(Shape::Canonical(kind)))
         }
         Value::Table(table) if table.get("implicit").is_some() => {
-            let implicit = implicit::read(report, node, finder)?;
-            Some(plain(Shape::Implicit(implicit), DVec3::ONE))
+            Some(plain(Shape::Implicit(implicit::read(item, finder)?)))
         }
         Value::Table(_) => {
-            let fields = Fields::open(report, "object.shape", node, SHAPES)?;
-            let (name, inner) = fields.exactly_one(SHAPES)?;
+            let (name, item) = Fields::open(item, SHAPES)?.exactly_one(SHAPES)?;
             let kind = ShapeKind::ALL.iter().find(|kind| kind.name() == name)?;
-            sized(report, *kind, inner)
+            sized(*kind, item)
         }
-        _ => report.wrong_type(
-            "object.shape",
-            node,
-            &format!("the name of a shape or a table with {}", one_of(SHAPES)),
-        ),
+        _ => {
+            let shapes = one_of(SHAPES);
+            item.wrong_type(format!("the name of a shape or a table with {shapes}"))
+        }
     }
 }
 
-fn plain(shape: Shape, size: DVec3) -> Sized {
+fn plain(shape: Shape) -> Sized {
     Sized {
         shape,
-        size,
+        size: DVec3::ONE,
         center: DVec3::ZERO,
     }
 }
 
 /// A canonical shape with the sizes that it declares.
-fn sized(report: &Report, kind: ShapeKind, node: &Node) -> Option<Sized> {
+fn sized(kind: ShapeKind, item: Item<'_>) -> Option<Sized> {
     let lengths = kind.lengths();
     let center = kind.is_centered().then_some("center");
     let keys: Vec<&str> = lengths.iter().map(|own| own.key).chain(center).collect();
-    let what = format!("object.shape.{}", kind.name());
-    let fields = Fields::open(report, what, node, &keys)?;
+    let fields = Fields::open(item, &keys)?;
     for (i, one) in lengths.iter().enumerate() {
         for other in &lengths[i + 1..] {
             if one.axes.iter().any(|axis| other.axes.contains(axis)) {
@@ -184,16 +170,12 @@ fn sized(report: &Report, kind: ShapeKind, node: &Node) -> Option<Sized> {
             size[axis] = usual.unwrap_or(size[axis]);
         }
     }
-    // All are read before any is missed, so that nothing that is wrong goes unsaid.
-    let read: Vec<Option<()>> = lengths
+    let read = lengths
         .iter()
-        .filter_map(|own| Some((own, fields.get(own.key)?)))
-        .map(|(own, node)| stretch(report, &fields.path(own.key), node, own, &mut size))
-        .collect();
-    let center = fields.optional("center", DVec3::ZERO, |what, node| {
-        report.vector(what, node)
-    });
-    read.into_iter().collect::<Option<()>>()?;
+        .filter_map(|own| Some((own, fields.item(own.key)?)));
+    let read = every(read.map(|(own, item)| stretch(&item, own, &mut size)));
+    let center = fields.optional("center", DVec3::ZERO, |item| item.vector());
+    read?;
     Some(Sized {
         shape: Shape::Canonical(kind),
         size,
@@ -202,11 +184,11 @@ fn sized(report: &Report, kind: ShapeKind, node: &Node) -> Option<Sized> {
 }
 
 /// Reads a length and stretches the axes that it is about.
-fn stretch(report: &Report, what: &str, node: &Node, own: &Length, size: &mut DVec3) -> Option<()> {
+fn stretch(item: &Item<'_>, own: &Length, size: &mut DVec3) -> Option<()> {
     let numbers = match (own.each, own.axes.len()) {
-        (false, count) => vec![report.positive(what, node)?; count],
-        (true, 2) => lengths::<2>(report, what, node)?.to_vec(),
-        (true, _) => lengths::<3>(report, what, node)?.to_vec(),
+        (false, count) => vec![item.positive()?; count],
+        (true, 2) => lengths::<2>(item)?.to_vec(),
+        (true, _) => lengths::<3>(item)?.to_vec(),
     };
     for (&axis, number) in own.axes.iter().zip(numbers) {
         size[axis] = own.share * number;
@@ -215,12 +197,10 @@ fn stretch(report: &Report, what: &str, node: &Node, own: &Length, size: &mut DV
 }
 
 /// `N` numbers above zero.
-fn lengths<const N: usize>(report: &Report, what: &str, node: &Node) -> Option<[f64; N]> {
-    let numbers = report.numbers(what, node)?;
-    if let Value::List(nodes) = &node.value {
-        for (i, node) in nodes.iter().enumerate() {
-            report.positive(&format!("{what}[{i}]"), node)?;
-        }
+fn lengths<const N: usize>(item: &Item<'_>) -> Option<[f64; N]> {
+    let numbers = item.numbers()?;
+    for entry in item.list("")? {
+        entry.positive()?;
     }
     Some(numbers)
 }

@@ -1,81 +1,50 @@
 //! Laying panels and settings over the file.
 
-use super::fields::{Complaint, Report};
-use super::materials;
+use std::sync::LazyLock;
+
+use super::fields::Report;
 use super::tree::{self, Entry, Node, Place, Table, Value};
-
-/// Keys that exclude each other. When something laid over brings one of them, the others give
-/// way, so that a panel can turn a diffuse wall into a mirror without a contradiction.
-const RIVALS: &[&[&str]] = &[
-    &["fov", "orthographic"],
-    &[
-        "table",
-        "csv",
-        "blackbody",
-        "rgb",
-        "name",
-        "constant",
-        "radiance",
-    ],
-    &["ior", "cauchy", "sellmeier"],
-    super::objects::SHAPES,
-];
-
-/// Keys that mean nothing without a rival that has given way.
-const COMPANIONS: &[(&str, &str)] = &[
-    ("table", "scale"),
-    ("csv", "scale"),
-    ("blackbody", "scale"),
-    ("rgb", "scale"),
-    ("name", "scale"),
-    ("constant", "scale"),
-    ("implicit", "inside"),
-    ("implicit", "parameters"),
-    ("implicit", "closed"),
-    ("implicit", "finder"),
-    ("implicit", "steps"),
-];
+use super::{ProjectionKind, implicit, index, materials, objects, spectra};
 
 /// Deepest path of a setting.
 const DEPTH: usize = 32;
+
+/// Keys that exclude each other. When something laid over brings one of them, the others give
+/// way, so that a panel can turn a diffuse wall into a mirror without a contradiction.
+static RIVALS: LazyLock<Vec<Vec<&str>>> = LazyLock::new(|| {
+    let mut rivals = materials::rivals();
+    rivals.push([spectra::KINDS, &["radiance"]].concat());
+    rivals.extend([ProjectionKind::KEYS, index::GLASS_KEYS, objects::SHAPES].map(<[_]>::to_vec));
+    rivals
+});
+
+/// Pairs of a key and one that means nothing without it.
+static COMPANIONS: LazyLock<Vec<(&str, &str)>> = LazyLock::new(|| {
+    let mut companions = materials::companions();
+    companions.extend(spectra::KINDS.iter().map(|kind| (*kind, "scale")));
+    companions.extend(implicit::KEYS.map(|key| ("implicit", key)));
+    companions
+});
 
 /// Lays `over` over `base`: tables are merged key by key, anything else is replaced.
 pub(super) fn merge(base: &mut Table, over: &Table) {
     for entry in &over.entries {
         give_way(base, &entry.key);
-        match base.entries.iter_mut().find(|e| e.key == entry.key) {
-            Some(Entry {
-                node:
-                    Node {
-                        value: Value::Table(old),
-                        ..
-                    },
-                ..
-            }) if matches!(entry.node.value, Value::Table(_)) => {
-                if let Value::Table(new) = &entry.node.value {
-                    merge(old, new);
-                }
-            }
-            Some(existing) => *existing = entry.clone(),
-            None => base.entries.push(entry.clone()),
+        let old = base.get_mut(&entry.key).and_then(Node::table_mut);
+        match (old, &entry.node.value) {
+            (Some(old), Value::Table(new)) => merge(old, new),
+            _ => base.put(entry.clone()),
         }
     }
 }
 
 /// Removes the rivals of `key` (and what belongs to them) from a table it is laid over.
 fn give_way(base: &mut Table, key: &str) {
-    let materials = materials::rivals();
-    let groups = RIVALS.iter().copied();
-    let groups = groups.chain(materials.iter().map(Vec::as_slice));
-    let companions = [COMPANIONS, &materials::companions()].concat();
-    for group in groups.filter(|group| group.contains(&key)) {
-        for rival in group.iter().filter(|rival| **rival != key) {
-            if base.get(rival).is_none() {
-                continue;
-            }
-            base.entries.retain(|e| e.key != *rival);
-            for (_, companion) in companions.iter().filter(|(owner, _)| owner == rival) {
-                base.entries.retain(|e| e.key != *companion);
+    let groups = RIVALS.iter().filter(|group| group.contains(&key));
+    for rival in groups.flatten().filter(|rival| **rival != key) {
+        if base.remove(rival).is_some() {
+            for (_, companion) in COMPANIONS.iter().filter(|(owner, _)| owner == rival) {
+                base.remove(companion);
             }
         }
     }
@@ -83,27 +52,18 @@ fn give_way(base: &mut Table, key: &str) {
 
 /// Has all implicit surfaces found by one finder: the image's, instead of their own.
 pub(super) fn use_finder(root: &mut Table, place: Place, name: &str) {
-    if let Some(objects) = root.entries.iter_mut().find(|e| e.key == "object")
-        && let Value::List(objects) = &mut objects.node.value
+    if let Some(objects) = root.get_mut("object")
+        && let Value::List(objects) = &mut objects.value
     {
-        for object in objects {
-            if let Value::Table(object) = &mut object.value
-                && let Some(shape) = object.entries.iter_mut().find(|e| e.key == "shape")
-                && let Value::Table(shape) = &mut shape.node.value
-            {
-                shape.entries.retain(|e| e.key != "finder");
+        for object in objects.iter_mut().filter_map(Node::table_mut) {
+            if let Some(shape) = object.get_mut("shape").and_then(Node::table_mut) {
+                shape.remove("finder");
             }
         }
     }
-    if let Some(image) = root.entries.iter_mut().find(|e| e.key == "image")
-        && let Value::Table(image) = &mut image.node.value
-    {
-        image.entries.retain(|e| e.key != "finder");
-        image.entries.push(Entry {
-            key: "finder".to_owned(),
-            key_place: place,
-            node: Node::new(place, Value::Text(name.to_owned())),
-        });
+    if let Some(image) = root.get_mut("image").and_then(Node::table_mut) {
+        let node = Node::new(place, Value::Text(name.to_owned()));
+        image.put(Entry::new("finder", place, node));
     }
 }
 
@@ -118,18 +78,14 @@ pub(super) struct Setting {
 impl Setting {
     /// Reads `key` and `value`; the argument's text is `key=value`, its origin `origin`.
     pub fn parse(report: &Report, origin: usize, key: &str, value: &str) -> Option<Self> {
-        let key_place = Place {
-            origin,
-            start: 0,
-            end: key.len(),
-        };
+        let key_place = Place::new(origin, 0..key.len());
         let Ok(keys) = toml_edit::Key::parse(key) else {
-            let complaint = Complaint::new(key_place, format!("\"{key}\" is not a path"));
-            return report.fail(complaint.expected("dotted keys, such as camera.lens.radius=0.3"));
+            let expected = "dotted keys, such as camera.lens.radius=0.3";
+            return report.fail(key_place, format!("\"{key}\" is not a path"), expected);
         };
         if keys.len() > DEPTH {
-            let complaint = Complaint::new(key_place, format!("path of {} keys", keys.len()));
-            return report.fail(complaint.expected(format!("at most {DEPTH} keys")));
+            let message = format!("path of {} keys", keys.len());
+            return report.fail(key_place, message, format!("at most {DEPTH} keys"));
         }
         Some(Self {
             path: keys.iter().map(|key| key.get().to_owned()).collect(),
@@ -145,76 +101,57 @@ impl Setting {
 
     /// Lays the value over the document; tables on the way are made where there are none.
     pub fn apply(&self, report: &Report, root: &mut Table) {
-        if let Some((last, way)) = self.path.split_last() {
-            self.descend(report, root, way, last, 0);
-        }
+        self.descend(report, root, 0);
     }
 
-    fn descend(
-        &self,
-        report: &Report,
-        table: &mut Table,
-        way: &[String],
-        last: &str,
-        depth: usize,
-    ) {
-        let Some((key, way)) = way.split_first() else {
-            give_way(table, last);
-            self.put(table, last);
-            return;
-        };
+    /// Goes on in a table, by the key at this depth of the path.
+    fn descend(&self, report: &Report, table: &mut Table, depth: usize) {
+        let key = &self.path[depth];
         give_way(table, key);
+        let entry = |node| Entry::new(key, self.key_place, node);
+        if self.is_last(depth) {
+            return table.put(entry(self.node.clone()));
+        }
         if table.get(key).is_none() {
-            table.entries.push(Entry {
-                key: key.clone(),
-                key_place: self.key_place,
-                node: Node::new(self.key_place, Value::Table(Table::default())),
-            });
+            let empty = Value::Table(Table::default());
+            table.put(entry(Node::new(self.key_place, empty)));
         }
-        if let Some(entry) = table.entries.iter_mut().find(|e| e.key == *key) {
-            self.enter(report, &mut entry.node, way, last, depth + 1);
+        if let Some(node) = table.get_mut(key) {
+            self.enter(report, node, depth + 1);
         }
     }
 
-    fn put(&self, table: &mut Table, key: &str) {
-        let entry = Entry {
-            key: key.to_owned(),
-            key_place: self.key_place,
-            node: self.node.clone(),
-        };
-        match table.entries.iter_mut().find(|e| e.key == key) {
-            Some(existing) => *existing = entry,
-            None => table.entries.push(entry),
-        }
+    fn is_last(&self, depth: usize) -> bool {
+        depth + 1 == self.path.len()
     }
 
-    fn enter(&self, report: &Report, node: &mut Node, way: &[String], last: &str, depth: usize) {
+    /// Goes on in a value that is not the last of the path.
+    fn enter(&self, report: &Report, node: &mut Node, depth: usize) {
         let done = self.path[..depth].join(".");
         let kind = node.kind();
         match &mut node.value {
-            Value::Table(table) => self.descend(report, table, way, last, depth),
+            Value::Table(table) => self.descend(report, table, depth),
             Value::List(nodes) => {
-                let (key, rest) = way
-                    .split_first()
-                    .map_or((last, None), |(key, rest)| (key.as_str(), Some(rest)));
+                let key = &self.path[depth];
                 let count = nodes.len();
-                let found = key.parse::<usize>().ok().and_then(|i| nodes.get_mut(i));
-                match (found, rest) {
-                    (Some(node), Some(rest)) => self.enter(report, node, rest, last, depth + 1),
-                    (Some(node), None) => *node = self.node.clone(),
-                    (None, _) => report.add(
-                        Complaint::new(self.key_place, format!("{done} has no entry \"{key}\""))
-                            .expected(match count {
-                                0 => "nothing, as the array is empty".to_owned(),
-                                _ => format!("an index from 0 to {}", count - 1),
-                            }),
-                    ),
+                match key.parse::<usize>().ok().and_then(|i| nodes.get_mut(i)) {
+                    Some(node) if self.is_last(depth) => *node = self.node.clone(),
+                    Some(node) => self.enter(report, node, depth + 1),
+                    None => {
+                        let message = format!("{done} has no entry \"{key}\"");
+                        let expected = match count {
+                            0 => "nothing, as the array is empty".to_owned(),
+                            _ => format!("an index from 0 to {}", count - 1),
+                        };
+                        report.fail::<()>(self.key_place, message, expected);
+                    }
                 }
             }
-            _ => report.add(
-                Complaint::new(self.key_place, format!("{done} is {kind} and has no keys"))
-                    .expected("the path of a value, or of a table or array that holds it"),
-            ),
+            _ => {
+                let message = format!("{done} is {kind} and has no keys");
+                let expected = "the path of a value, or of a table or array that holds it";
+                report.fail::<()>(self.key_place, message, expected);
+            }
         }
     }
 }
@@ -224,11 +161,7 @@ fn parse_value(report: &Report, key_place: Place, value: &str) -> Option<Node> {
     const BEFORE: &str = "v = ";
     let origin = key_place.origin;
     let begin = key_place.end + 1;
-    let place = Place {
-        origin,
-        start: begin,
-        end: begin + value.len(),
-    };
+    let place = Place::new(origin, begin..begin + value.len());
     // Positions are shifted so that they count from the start of the argument: first the words
     // put before the value are taken off, then the key is added.
     let mut padded = " ".repeat(begin);
@@ -238,17 +171,16 @@ fn parse_value(report: &Report, key_place: Place, value: &str) -> Option<Node> {
         Ok(table) if table.entries.len() == 1 => {
             table.entries.into_iter().next().map(|entry| entry.node)
         }
-        Ok(_) => report.fail(
-            Complaint::new(place, "the argument holds more than one value").expected("one value"),
-        ),
+        Ok(_) => report.fail(place, "the argument holds more than one value", "one value"),
         Err(_) if is_bare_word(value) => Some(Node {
             place,
             value: Value::Text(value.to_owned()),
             written: Some(value.into()),
         }),
         Err(error) => report.fail(
-            Complaint::new(place, format!("not a value: {}", error.message().trim()))
-                .expected("a TOML value, or a word"),
+            place,
+            format!("not a value: {}", error.message().trim()),
+            "a TOML value, or a word",
         ),
     }
 }

@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::fields::{Complaint, Fields, Report};
+use super::fields::{Fields, Item, Report, one_of};
 use super::file;
-use super::tree::{Node, Table, Value};
+use super::tree::{Node, Value};
 use crate::declare::Role;
 use crate::spectrum::{self, NM_MAX, NM_MIN, RgbError, SPECTRUM_NAMES, Spectrum};
 
@@ -25,19 +25,16 @@ pub(super) struct Spectra<'a> {
     names: Vec<String>,
 }
 
-const KINDS: &[&str] = &["table", "csv", "blackbody", "rgb", "name", "constant"];
-const KEYS: &[&str] = &[
-    "table",
-    "csv",
-    "blackbody",
-    "rgb",
-    "name",
-    "constant",
-    "scale",
-];
-const EXPECTED: &str = "a spectrum: a number, a name, or a table with one of \"table\", \"csv\", \
-                        \"blackbody\", \"rgb\", \"name\", \"constant\"";
+/// Keys of a spectrum's table: it has one of them.
+pub(super) const KINDS: &[&str] = &["table", "csv", "blackbody", "rgb", "name", "constant"];
 const SAMPLES: &str = "at least two samples [nm, value]";
+
+fn expected() -> String {
+    format!(
+        "a spectrum: a number, a name, or a table with {}",
+        one_of(KINDS)
+    )
+}
 
 impl<'a> Spectra<'a> {
     /// Reads `[spectra]`; a definition may use names defined above it.
@@ -49,17 +46,18 @@ impl<'a> Spectra<'a> {
             names: SPECTRUM_NAMES.map(str::to_owned).to_vec(),
         };
         let Some(node) = node else { return spectra };
+        let item = |path: String, node| Item { report, path, node };
         let Value::Table(table) = &node.value else {
-            report.wrong_type::<()>("spectra", node, "a table of named spectra");
+            item("spectra".to_owned(), node).wrong_type::<()>("a table of named spectra");
             return spectra;
         };
         for entry in &table.entries {
             if Spectrum::named(&entry.key).is_some() {
                 let message = format!("\"{}\" is the name of a standard spectrum", entry.key);
-                report.add(Complaint::new(entry.key_place, message).expected("a name of your own"));
+                report.fail::<()>(entry.key_place, message, "a name of your own");
                 continue;
             }
-            let draft = spectra.draft(&format!("spectra.{}", entry.key), &entry.node);
+            let draft = spectra.draft(&item(format!("spectra.{}", entry.key), &entry.node));
             spectra.named.insert(entry.key.clone(), draft);
             spectra.names.push(entry.key.clone());
         }
@@ -67,160 +65,64 @@ impl<'a> Spectra<'a> {
     }
 
     /// Reads a spectrum and checks its values.
-    pub fn spectrum(&self, what: &str, node: &Node, role: Role) -> Option<Spectrum> {
-        let spectrum = match (self.draft(what, node)?, role) {
+    pub fn spectrum(&self, item: &Item<'_>, role: Role) -> Option<Spectrum> {
+        let spectrum = match (self.draft(item)?, role) {
             (Draft::Fixed(spectrum), _) => spectrum,
-            (Draft::Rgb(rgb), Role::Reflectance) => {
-                self.fitted(what, node, Spectrum::rgb_reflectance(rgb))?
-            }
-            (Draft::Rgb(rgb), Role::Emission) => {
-                self.fitted(what, node, Spectrum::rgb_emission(rgb))?
-            }
+            (Draft::Rgb(rgb), Role::Reflectance) => fitted(item, Spectrum::rgb_reflectance(rgb))?,
+            (Draft::Rgb(rgb), Role::Emission) => fitted(item, Spectrum::rgb_emission(rgb))?,
             (Draft::Rgb(_), Role::Index | Role::Extinction) => {
-                let complaint = Complaint::new(node.place, format!("{what} is a colour"));
-                return self
-                    .report
-                    .fail(complaint.expected("a number, \"table\" or \"csv\""));
+                return item.wrong("a colour", "a number, \"table\" or \"csv\"");
             }
         };
-        self.check(what, node, &spectrum, role)?;
+        check(item, &spectrum, role)?;
         Some(spectrum)
     }
 
-    fn fitted(&self, what: &str, node: &Node, fit: Result<Spectrum, RgbError>) -> Option<Spectrum> {
-        let (component, expected) = match fit {
-            Ok(spectrum) => return Some(spectrum),
-            Err(RgbError::Reflectance(c)) => (c, "components between 0 and 1"),
-            Err(RgbError::Emission(c)) => (c, "finite components of at least 0"),
-        };
-        let message = format!("{what} has the colour component {component}");
-        self.report
-            .fail(Complaint::new(node.place, message).expected(expected))
-    }
-
-    fn check(&self, what: &str, node: &Node, spectrum: &Spectrum, role: Role) -> Option<()> {
-        let (low, high) = (spectrum.min_value(), spectrum.max_value());
-        let fail = |value: f64, expected: &str| {
-            let message = if matches!(spectrum, Spectrum::Constant(_)) {
-                format!("{what} is {value}")
-            } else {
-                format!("{what} has the value {value}")
-            };
-            self.report
-                .fail(Complaint::new(node.place, message).expected(expected))
-        };
-        match role {
-            Role::Reflectance if low < 0.0 => fail(low, "a reflectance between 0 and 1"),
-            Role::Reflectance if high > 1.0 => fail(high, "a reflectance between 0 and 1"),
-            Role::Emission | Role::Extinction if low < 0.0 => fail(low, "values of at least 0"),
-            Role::Index if low <= 0.0 => fail(
-                low,
-                &format!("values greater than 0 at all wavelengths from {NM_MIN} to {NM_MAX} nm"),
-            ),
-            _ if !high.is_finite() => fail(high, "finite values"),
-            _ => Some(()),
-        }
-    }
-
-    fn draft(&self, what: &str, node: &Node) -> Option<Draft> {
-        match &node.value {
+    fn draft(&self, item: &Item<'_>) -> Option<Draft> {
+        match &item.node.value {
             Value::Integer(_) | Value::Float(_) => {
-                let value = self.report.number(what, node)?;
-                Some(Draft::Fixed(Spectrum::Constant(value)))
+                Some(Draft::Fixed(Spectrum::Constant(item.number()?)))
             }
-            Value::Text(name) => self.by_name(what, node, name, 1.0),
-            Value::Table(_) => self.described(what, node),
-            _ => self.report.wrong_type(what, node, EXPECTED),
+            Value::Text(name) => self.by_name(item, name, 1.0),
+            Value::Table(_) => self.described(item),
+            _ => item.wrong_type(expected()),
         }
     }
 
-    fn by_name(&self, what: &str, node: &Node, name: &str, scale: f64) -> Option<Draft> {
+    fn by_name(&self, item: &Item<'_>, name: &str, scale: f64) -> Option<Draft> {
         if let Some(spectrum) = Spectrum::named(name) {
-            return self.scaled(what, node, Draft::Fixed(spectrum), scale);
+            return scaled(item, Draft::Fixed(spectrum), scale);
         }
         if let Some(draft) = self.named.get(name) {
-            return self.scaled(what, node, draft.clone()?, scale);
+            return scaled(item, draft.clone()?, scale);
         }
         let names: Vec<&str> = self.names.iter().map(String::as_str).collect();
-        let message = format!("{what} names the unknown spectrum \"{name}\"");
-        self.report.unknown(node.place, message, name, &names)
+        let message = format!("{} names the unknown spectrum \"{name}\"", item.path);
+        item.unknown(message, name, &names)
     }
 
-    fn described(&self, what: &str, node: &Node) -> Option<Draft> {
-        let fields = Fields::open(self.report, what, node, KEYS)?;
-        let scale = fields.optional("scale", 1.0, |what, node| self.report.number(what, node));
+    fn described(&self, item: &Item<'_>) -> Option<Draft> {
+        let fields = Fields::open(item.clone(), &[KINDS, &["scale"]].concat())?;
+        let scale = fields.optional("scale", 1.0, |scale| scale.number());
         let (kind, inner) = fields.exactly_one(KINDS)?;
-        let path = fields.path(kind);
         let draft = match kind {
-            "table" => Draft::Fixed(Spectrum::Table(self.table(&path, inner)?)),
-            "csv" => Draft::Fixed(Spectrum::Table(self.csv(&path, inner)?)),
+            "table" => Draft::Fixed(Spectrum::Table(table(&inner)?)),
+            "csv" => Draft::Fixed(Spectrum::Table(self.csv(&inner)?)),
             "blackbody" => Draft::Fixed(Spectrum::Blackbody {
-                kelvin: self.report.positive(&path, inner)?,
+                kelvin: inner.positive()?,
                 scale: 1.0,
             }),
-            "rgb" => Draft::Rgb(self.report.numbers(&path, inner)?),
-            "name" => {
-                let name = self.report.text(&path, inner)?;
-                return self.by_name(&path, inner, name, scale?);
-            }
-            _ => Draft::Fixed(Spectrum::Constant(self.report.number(&path, inner)?)),
+            "rgb" => Draft::Rgb(inner.numbers()?),
+            "name" => return self.by_name(&inner, inner.text()?, scale?),
+            _ => Draft::Fixed(Spectrum::Constant(inner.number()?)),
         };
-        self.scaled(what, node, draft, scale?)
+        scaled(item, draft, scale?)
     }
 
-    fn scaled(&self, what: &str, node: &Node, draft: Draft, factor: f64) -> Option<Draft> {
-        let (draft, finite) = match draft {
-            Draft::Rgb(rgb) => {
-                let rgb = rgb.map(|c| c * factor);
-                (Draft::Rgb(rgb), rgb.iter().all(|c| c.is_finite()))
-            }
-            Draft::Fixed(spectrum) => {
-                let scaled = spectrum.scaled(factor);
-                let finite = scaled.min_value().is_finite() && scaled.max_value().is_finite();
-                (Draft::Fixed(scaled), finite)
-            }
-        };
-        if finite {
-            return Some(draft);
-        }
-        let message = format!("{what} overflows when multiplied by {factor}");
-        self.report
-            .fail(Complaint::new(node.place, message).expected("finite values"))
-    }
-
-    fn table(&self, what: &str, node: &Node) -> Option<spectrum::Table> {
-        let rows = self.report.list(what, node, SAMPLES)?;
-        if rows.len() < 2 {
-            let message = match rows.len() {
-                0 => format!("{what} is empty"),
-                _ => format!("{what} has only one sample"),
-            };
-            return self
-                .report
-                .fail(Complaint::new(node.place, message).expected(SAMPLES));
-        }
-        let mut nm = Vec::with_capacity(rows.len());
-        let mut values = Vec::with_capacity(rows.len());
-        for (i, row) in rows.iter().enumerate() {
-            let [wavelength, value] = self.report.numbers(&format!("{what}[{i}]"), row)?;
-            if let Err((message, expected)) = check_wavelength(nm.last(), wavelength) {
-                let message = format!("{what}[{i}]: {message}");
-                return self
-                    .report
-                    .fail(Complaint::new(row.place, message).expected(expected));
-            }
-            nm.push(wavelength);
-            values.push(value);
-        }
-        Some(spectrum::Table { nm, values })
-    }
-
-    fn csv(&self, what: &str, node: &Node) -> Option<spectrum::Table> {
-        let name = self.report.text(what, node)?;
+    fn csv(&self, item: &Item<'_>) -> Option<spectrum::Table> {
+        let name = item.text()?;
         let fail = |message: String, expected: &str| {
-            let message = format!("{what}: {message}");
-            self.report
-                .fail(Complaint::new(node.place, message).expected(expected))
+            item.fail(format!("{}: {message}", item.path), expected)
         };
         let bytes = match file::read_bytes(&self.base_dir.join(name)) {
             Ok(bytes) => bytes,
@@ -251,6 +153,76 @@ impl<'a> Spectra<'a> {
     }
 }
 
+fn fitted(item: &Item<'_>, fit: Result<Spectrum, RgbError>) -> Option<Spectrum> {
+    let (component, expected) = match fit {
+        Ok(spectrum) => return Some(spectrum),
+        Err(RgbError::Reflectance(c)) => (c, "components between 0 and 1"),
+        Err(RgbError::Emission(c)) => (c, "finite components of at least 0"),
+    };
+    let message = format!("{} has the colour component {component}", item.path);
+    item.fail(message, expected)
+}
+
+fn check(item: &Item<'_>, spectrum: &Spectrum, role: Role) -> Option<()> {
+    let (low, high) = (spectrum.min_value(), spectrum.max_value());
+    let fail = |value: f64, expected: &str| {
+        if matches!(spectrum, Spectrum::Constant(_)) {
+            return item.wrong(value, expected);
+        }
+        item.fail(format!("{} has the value {value}", item.path), expected)
+    };
+    match role {
+        Role::Reflectance if low < 0.0 => fail(low, "a reflectance between 0 and 1"),
+        Role::Reflectance if high > 1.0 => fail(high, "a reflectance between 0 and 1"),
+        Role::Emission | Role::Extinction if low < 0.0 => fail(low, "values of at least 0"),
+        Role::Index if low <= 0.0 => fail(
+            low,
+            &format!("values greater than 0 at all wavelengths from {NM_MIN} to {NM_MAX} nm"),
+        ),
+        _ if !high.is_finite() => fail(high, "finite values"),
+        _ => Some(()),
+    }
+}
+
+fn scaled(item: &Item<'_>, draft: Draft, factor: f64) -> Option<Draft> {
+    let (draft, finite) = match draft {
+        Draft::Rgb(rgb) => {
+            let rgb = rgb.map(|c| c * factor);
+            (Draft::Rgb(rgb), rgb.iter().all(|c| c.is_finite()))
+        }
+        Draft::Fixed(spectrum) => {
+            let scaled = spectrum.scaled(factor);
+            let finite = scaled.min_value().is_finite() && scaled.max_value().is_finite();
+            (Draft::Fixed(scaled), finite)
+        }
+    };
+    if finite {
+        return Some(draft);
+    }
+    let message = format!("{} overflows when multiplied by {factor}", item.path);
+    item.fail(message, "finite values")
+}
+
+fn table(item: &Item<'_>) -> Option<spectrum::Table> {
+    let rows = item.list(SAMPLES)?;
+    match rows.len() {
+        0 => return item.wrong("empty", SAMPLES),
+        1 => return item.fail(format!("{} has only one sample", item.path), SAMPLES),
+        _ => {}
+    }
+    let mut nm = Vec::with_capacity(rows.len());
+    let mut values = Vec::with_capacity(rows.len());
+    for row in rows {
+        let [wavelength, value] = row.numbers()?;
+        if let Err((message, expected)) = check_wavelength(nm.last(), wavelength) {
+            return row.fail(format!("{}: {message}", row.path), expected);
+        }
+        nm.push(wavelength);
+        values.push(value);
+    }
+    Some(spectrum::Table { nm, values })
+}
+
 /// The rules a further wavelength of a table has to keep, or what is wrong and what was expected.
 fn check_wavelength(previous: Option<&f64>, wavelength: f64) -> Result<(), (String, &'static str)> {
     if wavelength <= 0.0 {
@@ -267,16 +239,14 @@ fn check_wavelength(previous: Option<&f64>, wavelength: f64) -> Result<(), (Stri
 }
 
 /// Reads `environment = SPECTRUM` or `[environment] radiance = SPECTRUM`.
-pub(super) fn environment(spectra: &Spectra<'_>, root: &Table) -> Option<Option<Spectrum>> {
-    let Some(node) = root.get("environment") else {
-        return Some(None);
-    };
-    let read = |what: &str, node: &Node| spectra.spectrum(what, node, Role::Emission);
-    match &node.value {
+pub(super) fn environment(spectra: &Spectra<'_>, item: Item<'_>) -> Option<Spectrum> {
+    match &item.node.value {
         Value::Table(table) if table.get("radiance").is_some() || table.entries.is_empty() => {
-            let fields = Fields::open(spectra.report, "environment", node, &["radiance"])?;
-            fields.required("radiance", EXPECTED, read).map(Some)
+            let fields = Fields::open(item, &["radiance"])?;
+            fields.required("radiance", &expected(), |radiance| {
+                spectra.spectrum(&radiance, Role::Emission)
+            })
         }
-        _ => read("environment", node).map(Some),
+        _ => spectra.spectrum(&item, Role::Emission),
     }
 }

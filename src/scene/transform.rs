@@ -1,104 +1,74 @@
 //! Reading transforms, with entries as exact as they can be.
 
 use glam::DVec3;
-use num_bigint::BigInt;
-use num_traits::Zero;
 
-use super::fields::{Complaint, Fields, Report};
-use super::names::one_of;
-use super::tree::{Node, Place, Value};
+use super::fields::{Fields, Item, Report, every, one_of};
+use super::tree::{Place, Value};
 use crate::math::affine::Affine;
+use crate::math::exact::Exact;
+use crate::math::number::Number;
 
-const STEPS: &[&str] = &[
-    "translate",
-    "rotate_x",
-    "rotate_y",
-    "rotate_z",
-    "rotate",
-    "scale",
-    "shear",
-    "matrix",
+/// Transforms by their keys.
+type Reader = fn(Item<'_>) -> Option<Affine>;
+const STEPS: [(&str, Reader); 8] = [
+    ("translate", |item| item.vector().map(Affine::translate)),
+    ("rotate_x", |item| Some(rotation(DVec3::X, item.number()?))),
+    ("rotate_y", |item| Some(rotation(DVec3::Y, item.number()?))),
+    ("rotate_z", |item| Some(rotation(DVec3::Z, item.number()?))),
+    ("rotate", rotate),
+    ("scale", |item| scale(&item)),
+    ("shear", shear),
+    ("matrix", |item| matrix(&item)),
 ];
 
 /// Reads a list of transforms; the first acts first.
-pub(super) fn read(report: &Report, what: &str, node: &Node) -> Option<Affine> {
+pub(super) fn read(item: &Item<'_>) -> Option<Affine> {
     let expected = "an array of transforms, such as [{ rotate_y = 30 }, { scale = 2 }]";
-    let nodes = report.list(what, node, expected)?;
-    let steps: Vec<Option<Affine>> = nodes
-        .iter()
-        .enumerate()
-        .map(|(i, node)| step(report, &format!("{what}[{i}]"), node))
-        .collect();
-    let steps: Option<Vec<Affine>> = steps.into_iter().collect();
-    let composed = steps?
-        .into_iter()
-        .reduce(|first, then| then.after(&first))
-        .unwrap_or(Affine::IDENTITY);
-    Some(composed)
+    let steps = item.list(expected)?.into_iter().map(|item| {
+        let keys = STEPS.map(|(key, _)| key);
+        let (key, item) = Fields::open(item, &keys)?.exactly_one(&keys)?;
+        let (_, read) = STEPS.iter().find(|(own, _)| *own == key)?;
+        read(item)
+    });
+    let composed = every(steps)?.into_iter();
+    let composed = composed.reduce(|first, then| then.after(&first));
+    Some(composed.unwrap_or(Affine::IDENTITY))
 }
 
 /// A matrix that maps space onto a plane, or whose entries are not numbers, places nothing.
 pub(super) fn check(report: &Report, place: Place, affine: &Affine) -> Option<()> {
     if !affine.rows.as_flattened().iter().all(|x| x.is_finite()) {
-        let complaint = Complaint::new(place, "the object's matrix has entries that are infinite");
-        return report.fail(complaint.expected("sizes and transforms that stay finite"));
+        let message = "the object's matrix has entries that are infinite";
+        return report.fail(place, message, "sizes and transforms that stay finite");
     }
     if is_singular(affine) {
-        let complaint = Complaint::new(place, "the object's matrix is singular");
-        return report.fail(complaint.expected("an invertible transform"));
+        let message = "the object's matrix is singular";
+        return report.fail(place, message, "an invertible transform");
     }
     Some(())
 }
 
-fn step(report: &Report, what: &str, node: &Node) -> Option<Affine> {
-    let fields = Fields::open(report, what, node, STEPS)?;
-    let (kind, inner) = fields.exactly_one(STEPS)?;
-    let path = fields.path(kind);
-    match kind {
-        "translate" => report.vector(&path, inner).map(Affine::translate),
-        "rotate_x" => report
-            .number(&path, inner)
-            .map(|angle| rotation(DVec3::X, angle)),
-        "rotate_y" => report
-            .number(&path, inner)
-            .map(|angle| rotation(DVec3::Y, angle)),
-        "rotate_z" => report
-            .number(&path, inner)
-            .map(|angle| rotation(DVec3::Z, angle)),
-        "rotate" => rotate(report, &path, inner),
-        "scale" => scale(report, &path, inner),
-        "shear" => shear(report, &path, inner),
-        _ => matrix(report, &path, inner),
-    }
-}
-
-fn rotate(report: &Report, what: &str, node: &Node) -> Option<Affine> {
-    let fields = Fields::open(report, what, node, &["axis", "angle"])?;
-    let axis = fields.required("axis", "axis = [x, y, z]", |what, node| {
-        report.direction(what, node)
-    });
-    let angle = fields.required("angle", "angle = degrees", |what, node| {
-        report.number(what, node)
-    });
+fn rotate(item: Item<'_>) -> Option<Affine> {
+    let fields = Fields::open(item, &["axis", "angle"])?;
+    let axis = fields.required("axis", "axis = [x, y, z]", |axis| axis.direction());
+    let angle = fields.required("angle", "angle = degrees", |angle| angle.number());
     Some(rotation(axis?, angle?))
 }
 
-fn scale(report: &Report, what: &str, node: &Node) -> Option<Affine> {
-    let factor = |what: &str, node: &Node| {
-        report.number_that(what, node, "a factor other than 0", |x| x != 0.0)
-    };
-    let Value::List(nodes) = &node.value else {
-        return factor(what, node).map(|s| Affine::scale(DVec3::splat(s)));
-    };
-    let numbers = report.vector(what, node)?;
-    for (i, node) in nodes.iter().enumerate() {
-        factor(&format!("{what}[{i}]"), node)?;
+fn scale(item: &Item<'_>) -> Option<Affine> {
+    let factor = |item: &Item<'_>| item.number_that("a factor other than 0", |x| x != 0.0);
+    if !matches!(item.node.value, Value::List(_)) {
+        return factor(item).map(|s| Affine::scale(DVec3::splat(s)));
+    }
+    let numbers = item.vector()?;
+    for entry in item.list("")? {
+        factor(&entry)?;
     }
     Some(Affine::scale(numbers))
 }
 
 /// `xy = k` adds k·y to x, and so on.
-fn shear(report: &Report, what: &str, node: &Node) -> Option<Affine> {
+fn shear(item: Item<'_>) -> Option<Affine> {
     const KEYS: [(&str, usize, usize); 6] = [
         ("xy", 0, 1),
         ("xz", 0, 2),
@@ -108,34 +78,33 @@ fn shear(report: &Report, what: &str, node: &Node) -> Option<Affine> {
         ("zy", 2, 1),
     ];
     let names = KEYS.map(|(name, ..)| name);
-    let fields = Fields::open(report, what, node, &names)?;
+    let fields = Fields::open(item, &names)?;
     if fields.table.entries.is_empty() {
-        return fields.missing(format!("{what} is empty"), &one_of(&names));
+        return fields.missing(format!("{} is empty", fields.what), &one_of(&names));
     }
     let mut affine = Affine::IDENTITY;
     for (name, row, column) in KEYS {
-        affine.rows[row][column] =
-            fields.optional(name, 0.0, |what, node| report.number(what, node))?;
+        affine.rows[row][column] = fields.optional(name, 0.0, |number| number.number())?;
     }
     Some(affine)
 }
 
-fn matrix(report: &Report, what: &str, node: &Node) -> Option<Affine> {
+fn matrix(item: &Item<'_>) -> Option<Affine> {
     let expected = "3 rows of 4 numbers, or 4 with [0, 0, 0, 1] as the last";
-    let nodes = report.list(what, node, expected)?;
-    if !(3..=4).contains(&nodes.len()) {
-        let message = format!("{what} has {} rows", nodes.len());
-        return report.fail(Complaint::new(node.place, message).expected(expected));
+    let entries = item.list(expected)?;
+    if !(3..=4).contains(&entries.len()) {
+        let message = format!("{} has {} rows", item.path, entries.len());
+        return item.fail(message, expected);
     }
     let mut rows = [[0.0; 4]; 4];
-    for (i, (row, node)) in rows.iter_mut().zip(nodes).enumerate() {
-        *row = report.numbers(&format!("{what}[{i}]"), node)?;
+    for (row, entry) in rows.iter_mut().zip(&entries) {
+        *row = entry.numbers()?;
     }
-    if let Some(last) = nodes.get(3)
+    if let Some(last) = entries.get(3)
         && rows[3] != [0.0, 0.0, 0.0, 1.0]
     {
-        let message = format!("the last row of {what} is not [0, 0, 0, 1]");
-        return report.fail(Complaint::new(last.place, message).expected("an affine matrix"));
+        let message = format!("the last row of {} is not [0, 0, 0, 1]", item.path);
+        return last.fail(message, "an affine matrix");
     }
     Some(Affine {
         rows: [rows[0], rows[1], rows[2]],
@@ -185,48 +154,20 @@ fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     }
 }
 
-/// Whether the determinant of the linear part is exactly zero, decided in integers. Scaling a row
-/// by a power of two does not change the answer, so each row is brought to integers on its own.
+/// Whether the determinant of the linear part is exactly zero.
 pub(super) fn is_singular(affine: &Affine) -> bool {
-    let rows: [[BigInt; 3]; 3] = affine.rows.map(|[x, y, z, _]| integers([x, y, z]));
-    let minor = |i: usize, j: usize| &rows[1][i] * &rows[2][j] - &rows[1][j] * &rows[2][i];
-    let determinant: BigInt =
-        &rows[0][0] * minor(1, 2) - &rows[0][1] * minor(0, 2) + &rows[0][2] * minor(0, 1);
-    determinant.is_zero()
-}
-
-/// Finite f64 as integers after multiplication by a common power of two.
-fn integers(values: [f64; 3]) -> [BigInt; 3] {
-    let parts = values.map(decode);
-    let lowest = parts
-        .iter()
-        .filter(|(mantissa, _)| *mantissa != 0)
-        .map(|(_, exponent)| *exponent)
-        .min()
-        .unwrap_or(0);
-    parts.map(|(mantissa, exponent)| {
-        // Zeros may have a lower exponent; for the others the shift is not negative.
-        BigInt::from(mantissa) << exponent.saturating_sub(lowest).max(0)
-    })
-}
-
-/// A finite f64 as mantissa × 2^exponent (IEEE 754-2019, section 3.4).
-fn decode(value: f64) -> (i64, i32) {
-    const FRACTION: u32 = f64::MANTISSA_DIGITS - 1;
-    let bits = value.to_bits();
-    let fraction = (bits & ((1 << FRACTION) - 1)).cast_signed();
-    let biased = ((bits >> FRACTION) & 0x7ff) as i32;
-    let (magnitude, exponent) = if biased == 0 {
-        (fraction, -1074)
-    } else {
-        (fraction | (1 << FRACTION), biased - 1075)
+    let rows = affine
+        .rows
+        .map(|[x, y, z, _]| [x, y, z].map(|entry| Exact::scaled(entry, 0)));
+    let minor = |i: usize, j: usize| {
+        let product = |a: usize, b: usize| rows[1][a].times(&rows[2][b]);
+        product(i, j).minus(&product(j, i))
     };
-    (
-        if value.is_sign_negative() {
-            -magnitude
-        } else {
-            magnitude
-        },
-        exponent,
-    )
+    let terms = [(0, minor(1, 2)), (1, minor(2, 0)), (2, minor(0, 1))];
+    let terms = terms.map(|(column, minor)| rows[0][column].times(&minor));
+    terms[0]
+        .plus(&terms[1])
+        .plus(&terms[2])
+        .magnitude()
+        .is_none()
 }

@@ -3,6 +3,8 @@
 //! Panels and settings lay parts of other origins over the file's own, so a place is a pair of
 //! origin and byte range.
 
+use std::ops::Range;
+
 use toml_edit::{Document, Item, TableLike, TomlError};
 
 use super::error::{Diagnostic, Origin};
@@ -18,9 +20,18 @@ pub(super) struct Place {
     pub end: usize,
 }
 
-/// The texts that places refer to, with the names they go by in messages.
+impl Place {
+    pub fn new(origin: usize, bytes: Range<usize>) -> Self {
+        Self {
+            origin,
+            start: bytes.start,
+            end: bytes.end,
+        }
+    }
+}
+
+/// The texts that places refer to.
 pub(super) struct Origins {
-    /// Name and text of each.
     pub texts: Vec<(Origin, String)>,
 }
 
@@ -76,6 +87,13 @@ impl Node {
         }
     }
 
+    pub fn table_mut(&mut self) -> Option<&mut Table> {
+        match &mut self.value {
+            Value::Table(table) => Some(table),
+            _ => None,
+        }
+    }
+
     /// What the value is, for messages.
     pub fn kind(&self) -> &'static str {
         match &self.value {
@@ -90,6 +108,16 @@ impl Node {
     }
 }
 
+impl Entry {
+    pub fn new(key: &str, key_place: Place, node: Node) -> Self {
+        Self {
+            key: key.to_owned(),
+            key_place,
+            node,
+        }
+    }
+}
+
 impl Table {
     pub fn get(&self, key: &str) -> Option<&Node> {
         self.entry(key).map(|entry| &entry.node)
@@ -97,6 +125,24 @@ impl Table {
 
     pub fn entry(&self, key: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.key == key)
+    }
+
+    pub fn get_mut(&mut self, key: &str) -> Option<&mut Node> {
+        let mut entries = self.entries.iter_mut();
+        entries.find(|e| e.key == key).map(|entry| &mut entry.node)
+    }
+
+    /// Adds an entry, or replaces the one of its key.
+    pub fn put(&mut self, entry: Entry) {
+        match self.entries.iter_mut().find(|e| e.key == entry.key) {
+            Some(existing) => *existing = entry,
+            None => self.entries.push(entry),
+        }
+    }
+
+    pub fn remove(&mut self, key: &str) -> Option<Node> {
+        let index = self.entries.iter().position(|e| e.key == key)?;
+        Some(self.entries.remove(index).node)
     }
 }
 
@@ -109,12 +155,7 @@ pub(super) fn parse(text: &str, origin: usize, shift: usize) -> Result<Table, To
         origin,
         shift,
     };
-    let root = Place {
-        origin,
-        start: 0,
-        end: 0,
-    };
-    Ok(reader.table(document.as_table(), root))
+    Ok(reader.table(document.as_table(), Place::new(origin, 0..0)))
 }
 
 struct Reader<'a> {
@@ -124,11 +165,10 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn place(&self, span: Option<std::ops::Range<usize>>, otherwise: Place) -> Place {
-        span.map_or(otherwise, |span| Place {
-            origin: self.origin,
-            start: span.start.saturating_sub(self.shift),
-            end: span.end.saturating_sub(self.shift),
+    fn place(&self, span: Option<Range<usize>>, otherwise: Place) -> Place {
+        span.map_or(otherwise, |span| {
+            let [start, end] = [span.start, span.end].map(|byte| byte.saturating_sub(self.shift));
+            Place::new(self.origin, start..end)
         })
     }
 
@@ -137,13 +177,8 @@ impl Reader<'_> {
         for (name, item) in table.iter() {
             let key_span = table.key(name).and_then(toml_edit::Key::span);
             let key_place = self.place(key_span, place);
-            if let Some(node) = self.item(item, key_place) {
-                entries.push(Entry {
-                    key: name.to_owned(),
-                    key_place,
-                    node,
-                });
-            }
+            let node = self.item(item, key_place);
+            entries.extend(node.map(|node| Entry::new(name, key_place, node)));
         }
         Table { entries }
     }
@@ -154,15 +189,13 @@ impl Reader<'_> {
             Item::None => return None,
             Item::Value(value) => return Some(self.value(value, key_place)),
             Item::Table(table) => Value::Table(self.table(table, place)),
-            Item::ArrayOfTables(tables) => Value::List(
-                tables
-                    .iter()
-                    .map(|table| {
-                        let place = self.place(table.span(), place);
-                        Node::new(place, Value::Table(self.table(table, place)))
-                    })
-                    .collect(),
-            ),
+            Item::ArrayOfTables(tables) => {
+                let node = |table: &toml_edit::Table| {
+                    let place = self.place(table.span(), place);
+                    Node::new(place, Value::Table(self.table(table, place)))
+                };
+                Value::List(tables.iter().map(node).collect())
+            }
         };
         Some(Node::new(place, value))
     }

@@ -70,7 +70,7 @@ pub fn find(request: &Request, scene: &Scene) -> Result<Found, StudyError> {
             (Some(reference), format!("the file {}", path.display()))
         }
         Choice::Radiance(value) => {
-            let truth = Reference::truth(size, &Spectrum::constant(*value));
+            let truth = Reference::truth(size, &Spectrum::Constant(*value));
             let about = format!("the radiance {value} at all wavelengths, known in closed form");
             (Some(truth), about)
         }

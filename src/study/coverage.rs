@@ -15,7 +15,6 @@
 
 use super::subject::Ready;
 use crate::render::Unwatched;
-use crate::render::blocks::luminances;
 use crate::stats::Estimate;
 use crate::stats::blocks::{EDGE, members};
 
@@ -147,7 +146,7 @@ pub fn cover(ready: &mut Ready, render: u32, blocks: &[Option<Block>]) -> Covera
     let rendered = ready.render(render, &mut Unwatched);
     let samples = f64::from(rendered.samples);
     let mut coverage = Coverage::default();
-    for (own, block) in luminances(&rendered).iter().zip(blocks) {
+    for (own, block) in rendered.block_luminances().iter().zip(blocks) {
         let Some(block) = block else { continue };
         let held = own.minus(&block.truth).p_value(0.0, 0.0) >= LEVEL;
         let enough = samples * block.contributing >= ENOUGH;

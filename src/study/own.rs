@@ -4,8 +4,7 @@ use std::path::Path;
 
 use super::reference::{Reference, ReferenceError, pixels, planes};
 use super::subject::Ready;
-use crate::film::provenance::hash;
-use crate::film::{Attribute, Picture, exr, names};
+use crate::film::{Attribute, Picture, exr, hash, names};
 use crate::render::Progress;
 
 /// How many times the reference's error, as a root mean square, is to lie below the best point's.

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::film::hash;
 use crate::film::names::{self, VARIANCE};
 use crate::film::pixels::Estimate;
-use crate::film::provenance::hash;
 use crate::film::{Attribute, Picture, exr};
 use crate::scene::{Overrides, Scene};
 use crate::spectrum::Spectrum;

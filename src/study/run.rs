@@ -14,7 +14,7 @@ use super::reference::Reference;
 use super::subject::{Ready, Subject};
 use super::work::Work;
 use crate::chart::{Key, Row};
-use crate::film::{provenance, whole};
+use crate::film::{hash, whole};
 use crate::render::memory;
 
 /// A study to be carried out.
@@ -102,11 +102,7 @@ pub fn run(request: &Request, watch: &mut dyn Watch) -> Result<Study, StudyError
     let record_text = journal::record(&said, &work.grid, &request.command);
     whole::write(&record, |file| {
         use std::io::Write as _;
-        let written = file.write_all(record_text.as_bytes());
-        written.map_err(|source| crate::film::Error::Write {
-            path: record.clone(),
-            source,
-        })
+        file.write_all(record_text.as_bytes())
     })?;
     let mut journal = Journal::open(directory.join("study.csv"))?;
     let mut clock = Clock::new(watch, work.remaining(&costs, &journal));
@@ -185,7 +181,7 @@ fn said(request: &Request, base: &Ready, found: &Found) -> Vec<(&'static str, St
     let overrides = &request.subject.overrides;
     vec![
         ("scene", source.path.clone()),
-        ("scene_hash", provenance::hash(&source.text)),
+        ("scene_hash", hash(&source.text)),
         ("panel", overrides.panel.clone().unwrap_or_default()),
         ("set", request.subject.settings()),
         ("finder", overrides.finder.clone().unwrap_or_default()),

@@ -8,7 +8,6 @@ use super::grid::Choices;
 use crate::chart::Key;
 use crate::plan::{Plan, PlanError};
 use crate::render::seeds::seed;
-use crate::render::tile::Window;
 use crate::render::{Instructions, Progress, Rendered, Request, render};
 use crate::scene::{self, Overrides, Scene, SceneError};
 
@@ -123,10 +122,9 @@ impl Ready {
     ) -> Rendered {
         self.plan.reseed(seed);
         let request = Request {
-            window: Window::whole(self.scene.image.size),
-            samples,
             time,
             instructions: self.instructions,
+            ..Request::whole(self.scene.image.size, samples)
         };
         render(&self.plan, &request, progress)
     }

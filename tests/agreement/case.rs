@@ -7,7 +7,7 @@ use etalon::inside::film::names;
 use etalon::inside::film::pixels::Estimate;
 use etalon::inside::film::spectral::channel_name;
 use etalon::inside::render::trace::first_hits;
-use etalon::inside::render::{Request, Unwatched, render, render_binned};
+use etalon::inside::render::{Request, Unwatched, render};
 use etalon::inside::scene::load;
 use etalon::{BinGrid, Instructions, Overrides, Plan, Rendered, Scene, Side, Singular, Window};
 
@@ -111,11 +111,11 @@ impl Case {
     /// # Errors
     /// [`CaseError`] where samples are not numbers.
     pub fn rendered(&self, plan: &Plan, spp: u32) -> Result<Side, CaseError> {
-        let request = Request::whole(self.scene.image.size, spp);
-        let rendered = match &self.bands {
-            Some(grid) => render_binned(plan, &request, grid, &mut Unwatched),
-            None => render(plan, &request, &mut Unwatched),
+        let request = Request {
+            bins: self.bands.as_ref(),
+            ..Request::whole(self.scene.image.size, spp)
         };
+        let rendered = render(plan, &request, &mut Unwatched);
         match rendered.not_a_number {
             0 => Ok(self.side(&rendered)),
             count => Err(format!("{}: {count} samples are not numbers", self.name).into()),

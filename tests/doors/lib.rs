@@ -11,12 +11,11 @@ pub mod fresnel;
 pub mod functions;
 pub mod intervals;
 pub mod lights;
+pub mod material;
 pub mod models;
 pub mod samplers;
 pub mod shapes;
 pub mod words;
-
-pub use etalon_lanes::doors::material;
 
 /// Tables of lane code, made in one of the precisions.
 #[derive(Debug, Clone, Copy)]

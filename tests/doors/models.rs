@@ -1,13 +1,15 @@
 //! Rays in whole scenes.
 
-use etalon_lanes::integrate::bounce::{Places, bounce};
+use etalon_lanes::integrate::bounce::bounce;
 use etalon_lanes::integrate::chunk::Workspace;
-use etalon_lanes::integrate::intersect::{Leaving, NOTHING, Rungs, Shadow, nearest, occluded};
+use etalon_lanes::integrate::intersect::{NOTHING, Rays, Rungs, Shadow, nearest, occluded};
 use etalon_lanes::integrate::model::Model;
-use etalon_lanes::integrate::pool::{IntField, RealField, flags};
+use etalon_lanes::integrate::pool::{Paths, flags};
 use etalon_lanes::math::instructions::{Instructions, Job};
 use etalon_lanes::math::lanes::{Lanes, Mask, Scalar, WIDEST};
 use etalon_lanes::math::twice::Twice;
+use etalon_lanes::math::vec3::Vec3;
+use etalon_lanes::sample::sequence::Identity;
 use etalon_lanes::shape::Ray;
 use etalon_lanes::shape::lanes::balls::Balls;
 
@@ -90,25 +92,25 @@ impl<T: Scalar> Answers<'_, T> {
     fn by<L: Lanes<Scalar = T>>(&self, l: L) -> Vec<Answer> {
         let mut answers = Vec::with_capacity(self.questions.len());
         for questions in self.questions.chunks(L::COUNT) {
-            let ray = load_rays(l, questions.iter().map(|question| question.ray));
             let (mut object, mut inward) = ([NOTHING; WIDEST], 0);
             for (i, question) in questions.iter().enumerate() {
                 object[i] = question.leaving;
                 inward |= u32::from(question.inward) << i;
             }
-            let leaving = Leaving {
-                object: l.load_int(&object),
+            let rays = Rays {
+                ray: load_rays(l, questions.iter().map(|question| question.ray)),
+                leaving: l.load_int(&object),
                 inward: l.mask_from_bits(inward),
             };
             let active = l.mask_from_bits(u32::MAX >> (WIDEST - questions.len()));
             let mut rungs = Rungs::default();
-            let found = nearest(l, self.model, &ray, &leaving, active, &mut rungs);
+            let found = nearest(l, self.model, &rays, active, &mut rungs);
             let shadow = Shadow {
-                ray,
+                rays,
                 limit: l.real(self.asking.limit),
                 except: l.int(self.asking.except),
             };
-            let blocked = occluded(l, self.model, &shadow, &leaving, active, &mut rungs).bits();
+            let blocked = occluded(l, self.model, &shadow, active, &mut rungs).bits();
             answers.extend((0..questions.len()).map(|i| {
                 let part = l.int_lane(found.part, i);
                 let entry = self.model.parts.entries.get(part as usize);
@@ -168,26 +170,33 @@ pub fn path_lengths(model: AnyModel, ray: Ray, most: usize) -> Vec<f64> {
 }
 
 fn follow<L: Lanes>(l: L, model: &Model<L::Scalar>, ray: Ray, most: usize) -> Vec<f64> {
-    let mut workspace = Workspace::<L::Scalar, 4>::new();
-    let pool = &mut workspace.pool;
-    for (field, v) in [
-        (RealField::Origin, ray.origin),
-        (RealField::Direction, ray.direction),
-    ] {
-        for axis in 0..3 {
-            pool.set_real(l, field, axis, 0, l.real(v[axis]));
-        }
-    }
-    pool.set_int(l, IntField::Departure, 0, l.int(NOTHING));
-    pool.set_int(l, IntField::Flags, 0, l.int(flags::SPECULAR));
+    let mut workspace = Workspace::<L::Scalar, 4>::default();
+    let zero = l.int(0);
+    let start = Paths {
+        origin: Vec3::splat(l, ray.origin),
+        direction: Vec3::splat(l, ray.direction),
+        pdf: l.real(0.0),
+        leaving: l.int(NOTHING),
+        flags: l.int(flags::SPECULAR),
+        id: Identity {
+            key: zero,
+            index: zero,
+            bounce: zero,
+        },
+        slot: zero,
+        row: zero,
+    };
+    workspace.pool.write(l, 0, &start);
     workspace.trace = Some(Vec::new());
     for _ in 0..most {
         workspace.pool.length = 1;
-        // Roulette is for later segments only.
-        workspace.pool.set_int(l, IntField::Depth, 0, l.int(0));
-        if bounce(l, model, &mut workspace, Places { at: 0, to: 0 }) == 0 {
+        if bounce(l, model, &mut workspace, 0, 0) == 0 {
             break;
         }
+        // Roulette is for later segments only.
+        let (mut paths, _) = workspace.pool.read(l, 0);
+        paths.id.bounce = zero;
+        workspace.pool.write(l, 0, &paths);
     }
     let vertices = workspace.trace.unwrap_or_default();
     vertices.iter().map(|vertex| vertex.distance).collect()

@@ -68,7 +68,7 @@ impl<T: Scalar> Job<T> for SampleNumbers<'_> {
             let [x, y, replicate, index] = columns_of(samples);
             let [x, y] = [l.load_int(&x), l.load_int(&y)];
             let [replicate, index] = [l.load_int(&replicate), l.load_int(&index)];
-            let id = self.sequence.identity(l, x, y, replicate, index);
+            let mut id = self.sequence.identity(l, x, y, replicate, index);
             let zero = l.real(0.0);
             let [a, b, c, d, e] = match self.numbers {
                 Numbers::Camera => {
@@ -76,12 +76,14 @@ impl<T: Scalar> Job<T> for SampleNumbers<'_> {
                     let ([u, v], [s, t]) = (sample.pixel, sample.lens);
                     [u, v, sample.wavelength, s, t]
                 }
-                Numbers::Pair(slot, depth) => {
-                    let [u, v] = self.sequence.pair(l, id, slot, l.int(depth));
+                Numbers::Pair(slot, bounce) => {
+                    id.bounce = l.int(bounce);
+                    let [u, v] = self.sequence.pair(l, id, slot);
                     [u, v, zero, zero, zero]
                 }
-                Numbers::Single(slot, depth) => {
-                    let u = self.sequence.single(l, id, slot, l.int(depth));
+                Numbers::Single(slot, bounce) => {
+                    id.bounce = l.int(bounce);
+                    let u = self.sequence.single(l, id, slot);
                     [u, zero, zero, zero, zero]
                 }
             };

@@ -2,10 +2,14 @@
 
 use etalon_lanes::math::instructions::{Instructions, Job, Precision};
 use etalon_lanes::math::lanes::{Lanes, Mask, Scalar};
+use etalon_lanes::math::number::Number;
 use etalon_lanes::math::vec3::Vec3;
+use etalon_lanes::shape::implicit::certified::Certified;
+use etalon_lanes::shape::ladder::{Question, ScaledRay};
 use etalon_lanes::shape::lanes::implicit::{LaneImplicit, StartSign};
 use etalon_lanes::shape::lanes::{Enclosure, LaneRay, LaneShape};
-use etalon_lanes::shape::{Placed, Ray};
+use etalon_lanes::shape::line::{LocalRay, Span};
+use etalon_lanes::shape::{Hit, Placed, Ray, ShapeKind};
 
 use crate::columns::{load_rays, vector};
 
@@ -88,4 +92,40 @@ impl Job<f64> for SignChanges<'_> {
         }
         found
     }
+}
+
+/// The question where the whole line enters and leaves a shape.
+pub struct Through(pub ShapeKind);
+
+impl Question for Through {
+    type Answer = Option<Span>;
+
+    fn ask<N: Number>(&self, ray: &LocalRay<N>) -> Option<Option<Span>> {
+        self.0.span(ray)
+    }
+}
+
+/// Both crossings of the whole line, at whatever t; the same one twice for flat shapes.
+pub fn crossings(placed: &Placed, ray: &Ray) -> Option<[Hit; 2]> {
+    if !ray.is_valid() {
+        return None;
+    }
+    let ray = ScaledRay::new(ray);
+    let (span, tier) = placed.ladder.climb(&ray, &Through(placed.kind()))?;
+    let Span { near, far } = span?;
+    Some([
+        placed.hit(&near, &ray, tier)?,
+        placed.hit(&far, &ray, tier)?,
+    ])
+}
+
+/// A finder with the bounds of rounding errors left out: to show that they are needed.
+pub fn without_bounds(mut finder: Certified) -> Certified {
+    for factor in &mut finder.factors {
+        factor.accounted = 0.0;
+        for bounds in &mut factor.bounds {
+            (bounds.error, bounds.change) = (0.0, 0.0);
+        }
+    }
+    finder
 }

@@ -10,13 +10,14 @@ use etalon::inside::declare::Value;
 use etalon::inside::integrate::model::{Appearance, Model};
 use etalon::inside::integrate::needs::Needs;
 use etalon::inside::integrate::parts::Parts;
-use etalon::inside::light::{LightShape, SmallLights};
+use etalon::inside::light::{LightShape, Place, SmallLights};
 use etalon::inside::material::{MaterialKind, fresnel};
 use etalon::inside::math::lanes::Scalar;
 use etalon::inside::plan::Tables;
 #[cfg(feature = "planted")]
 use etalon::inside::planted::Planted;
-use etalon::inside::spectrum::grid::{CELLS, LONGEST, SHORTEST, WavelengthGrid};
+use etalon::inside::spectrum::grid::{CELLS, WavelengthGrid};
+use etalon::inside::spectrum::{NM_MAX, NM_MIN};
 use etalon::{Plan, Scene};
 
 /// What can be wrong.
@@ -165,13 +166,13 @@ fn cosine<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
     let [light] = scene.lights.as_slice() else {
         return false;
     };
-    let etalon::inside::scene::Light::Directional { direction, .. } = light else {
+    let Some(Place::Towards(towards)) = light.place(scene.camera.from) else {
         return false;
     };
     for k in 0..model.lights.len() {
         if matches!(model.lights[k].shape, LightShape::Directional(_)) {
             let spectrum = model.lights[k].spectrum;
-            model.lights[k].spectrum = scaled(model, spectrum, |_| 1.0 / -direction.y);
+            model.lights[k].spectrum = scaled(model, spectrum, |_| 1.0 / towards.y);
             found = true;
         }
     }
@@ -216,7 +217,7 @@ fn polarisation<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
 /// in an emission.
 fn wavelengths<T: Scalar>(model: &mut Model<T>) -> bool {
     let factor = |nm: f64| {
-        let turns = (nm - SHORTEST) / (LONGEST - SHORTEST);
+        let turns = (nm - NM_MIN) / (NM_MAX - NM_MIN);
         1.0 / (1.0 + DENSITY_ERROR * (2.0 * std::f64::consts::TAU * turns).sin())
     };
     if let Some(environment) = model.environment {

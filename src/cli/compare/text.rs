@@ -3,24 +3,18 @@
 use std::fmt::Write as _;
 
 use etalon::inside::stats::metrics::Metric;
-use etalon::{Judgement, Metrics};
+use etalon::{Estimate, Judgement, Metrics};
 
-use super::{Report, With, score};
+use super::Report;
 
-/// The whole report.
+/// The report as tables and notes.
 pub fn text(report: &Report) -> String {
-    let [width, height] = report.size;
-    let mut text = match &report.with {
-        With::B(b) => format!(
-            "{} against {}, {width}x{height} pixels\n",
-            report.a.display(),
-            b.display()
-        ),
-        With::Truth(truth) => format!(
-            "the mean of {} against {truth}, {width}x{height} pixels\n",
-            report.a.display()
-        ),
+    let ([width, height], a) = (report.size, report.a.display());
+    let sides = match (&report.b, report.truth) {
+        (Some(b), _) => format!("{a} against {}", b.display()),
+        (None, truth) => format!("the mean of {a} against {}", truth.unwrap_or_default()),
     };
+    let mut text = format!("{sides}, {width}x{height} pixels\n");
     push_metrics(&mut text, report);
     if let Some(judgement) = &report.comparison.judgement {
         push_judgement(&mut text, judgement);
@@ -59,7 +53,12 @@ fn push_metrics(text: &mut String, report: &Report) {
     for channel in &report.comparison.channels {
         let [a, b] = channel.means;
         let means = format!("{:<20} {a:>12.6} {b:>12.6}", channel.channel);
-        push_row(text, &means, &channel.metrics);
+        let metrics = &channel.metrics;
+        if [a, b, metrics.rmse.value] == [0.0; 3] && metrics.smape.value.is_nan() {
+            let _ = writeln!(text, "{means} black in both pictures");
+        } else {
+            push_row(text, &means, metrics);
+        }
     }
     if let Some(metrics) = &report.comparison.rgb {
         push_row(
@@ -83,23 +82,42 @@ fn push_row(text: &mut String, start: &str, metrics: &Metrics) {
         .relmse_without_reference_variance
         .map_or_else(|| "unknown".to_owned(), measured);
     let relative = metrics.relative_mean_error;
-    let _ = writeln!(
-        text,
-        "{start} {:>+12.2e} {:>20} {:>18} {:>18} {unbiased:>18} {:>18}",
-        metrics.mean_error.value,
+    let relative = if relative.value.is_nan() {
+        UNDEFINED.to_owned()
+    } else {
         format!(
             "{:+.4} % ± {:.4} %",
             100.0 * relative.value,
             100.0 * relative.standard_error
-        ),
+        )
+    };
+    let _ = writeln!(
+        text,
+        "{start} {:>+12.2e} {relative:>20} {:>18} {:>18} {unbiased:>18} {:>18}",
+        metrics.mean_error.value,
         measured(metrics.rmse),
         measured(metrics.relmse),
         measured(metrics.smape),
     );
 }
 
-fn measured(metric: Metric) -> String {
-    format!("{:.2e} ± {:.0e}", metric.value, metric.standard_error)
+/// What a metric relative to 0 is.
+const UNDEFINED: &str = "undefined";
+
+fn measured(
+    Metric {
+        value,
+        standard_error,
+    }: Metric,
+) -> String {
+    if value.is_nan() {
+        UNDEFINED.to_owned()
+    } else if standard_error.is_nan() {
+        // Of a single pixel, or the root of a mean square of 0.
+        format!("{value:.2e}")
+    } else {
+        format!("{value:.2e} ± {standard_error:.0e}")
+    }
 }
 
 fn push_judgement(text: &mut String, judgement: &Judgement) {
@@ -127,13 +145,18 @@ fn push_judgement(text: &mut String, judgement: &Judgement) {
                 blocks.distribution_p_value
             )
         });
+        let bias = Estimate {
+            value: channel.relative_bias,
+            standard_error: channel.standard_error,
+            freedom: channel.freedom,
+        };
         let _ = writeln!(
             text,
             "{:<20} {:>10.4} % {:>10.4} % {:>+7.1} {:>9.2e} {:>20.4} % {blocks}",
             channel.channel,
             100.0 * channel.relative_bias,
             100.0 * channel.standard_error,
-            score(channel),
+            bias.score(0.0),
             channel.p_value,
             100.0 * channel.smallest_caught,
         );
@@ -143,14 +166,10 @@ fn push_judgement(text: &mut String, judgement: &Judgement) {
             let _ = writeln!(text, "{}: {words}", channel.channel);
         }
     }
-    let (verdict, level) = (judgement.consistent, judgement.level);
-    let verdict = if verdict {
-        "consistent"
-    } else {
-        "NOT consistent"
-    };
+    let not = if judgement.consistent { "" } else { "NOT " };
     let _ = writeln!(
         text,
-        "{verdict} (honest pictures are called inconsistent with probability {level:.0e})"
+        "{not}consistent (honest pictures are called inconsistent with probability {:.0e})",
+        judgement.level
     );
 }

@@ -1,25 +1,16 @@
 //! One picture to render: what, how much of it, and where to.
 
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use etalon::{BinGrid, Instructions, MOST_SAMPLES, Plan, Scene};
+use etalon::inside::film::whole;
+use etalon::{MOST_SAMPLES, Overrides, Plan, Scene};
 
 use super::super::args::Render;
-use super::super::error::CommandError;
-use super::super::values::{Layer, SpectralRange};
-use super::{is_stream, probe};
+use super::super::values::Layer;
+use super::super::{Failure, scene_words};
 
-/// The bins of plain `--layers spectral`: the visible range as most tables have it.
-const USUAL_BINS: SpectralRange = SpectralRange {
-    from: 400.0,
-    to: 700.0,
-    step: 10.0,
-};
-
-/// One picture to render.
 pub struct Job {
-    /// What it is made of.
     pub render: etalon::Render,
     /// The OpenEXR file.
     pub output: PathBuf,
@@ -28,127 +19,123 @@ pub struct Job {
 }
 
 impl Job {
-    /// Reads and plans.
-    pub fn new(
-        arguments: &Render,
-        panel: Option<&str>,
-        instructions: Instructions,
-    ) -> Result<Self, CommandError> {
-        let mut scene = Scene::load_with(&arguments.scene.scene, &arguments.overrides(panel))?;
+    /// Reads the scene and plans it.
+    pub fn new(arguments: &Render, panel: Option<&str>) -> Result<Self, Failure> {
+        let overrides = Overrides {
+            panel: panel.map(str::to_owned),
+            ..arguments.scene.overrides(&arguments.image.keys())
+        };
+        let scene = Scene::load_with(&arguments.scene.scene, &overrides);
+        let mut scene = scene.map_err(|error| scene_words(&error))?;
         // With a wanted error pilots choose the samples, before the time counts.
         let open = arguments.time.is_some() && arguments.target_error.is_none();
-        if open && !arguments.sets_spp() {
+        if open && !overrides.set.iter().any(|(key, _)| key == "image.spp") {
             if scene.image.sampler.needs_count() {
-                return Err(CommandError::TimeForStrata);
+                return Err(
+                    "--time needs --spp with the sampler \"stratified\": its strata are \
+                            cut for a planned number of samples (sobol and independent need none)"
+                        .into(),
+                );
             }
             scene.set_samples(MOST_SAMPLES);
         }
-        let plan = Plan::new(&scene, arguments.plan.is_full())?;
-        let mut render = etalon::Render::planned(scene, plan).with_layers(first(&arguments.layers));
+        let plan = Plan::new(&scene, arguments.plan == "full")?;
+        let mut render = etalon::Render::planned(scene, plan);
         if let Some(crop) = arguments.crop {
-            render = render.cropped(crop.0)?;
+            let cropped = render.cropped(crop);
+            render = cropped.map_err(|error| format!("the crop {error}"))?;
         }
-        render.time = arguments.time.map(|time| time.0);
-        render.instructions = instructions;
-        render.spectral = bins(&arguments.layers)?;
-        render.check_memory()?;
+        render.time = arguments.time;
+        render.instructions = arguments.instructions;
+        for layer in &arguments.layers {
+            match layer {
+                Layer::FirstHit(layer) => render.layers.push(*layer),
+                Layer::Spectral(bins) => render.spectral = Some(bins.clone()),
+            }
+        }
         let (output, preview) = paths(arguments, panel)?;
-        Ok(Self {
+        let job = Self {
             render,
             output,
             preview,
-        })
+        };
+        job.check_memory()?;
+        Ok(job)
+    }
+
+    pub fn check_memory(&self) -> Result<(), Failure> {
+        let checked = self.render.check_memory();
+        Ok(checked.map_err(|error| {
+            format!("{error}: use a smaller --size, a --crop or fewer spectral bins")
+        })?)
     }
 
     /// Checks that both files can be written, before there is anything to lose.
-    pub fn probe(&self) -> Result<(), CommandError> {
-        probe(&self.output)?;
-        self.preview.as_deref().map_or(Ok(()), probe)
+    pub fn probe(&self) -> Result<(), Failure> {
+        whole::probe(&self.output)?;
+        Ok(self.preview.as_deref().map_or(Ok(()), whole::probe)?)
     }
 }
 
-/// The layers about the first visible surface that are asked for.
-fn first(layers: &[Layer]) -> impl Iterator<Item = etalon::Layer> {
-    layers.iter().filter_map(|layer| match layer {
-        Layer::FirstHit(layer) => Some(*layer),
-        Layer::Spectral(_) => None,
-    })
-}
-
-/// The spectral bins asked for; where several are, the last counts.
-fn bins(layers: &[Layer]) -> Result<Option<BinGrid>, CommandError> {
-    let asked = layers.iter().rev().find_map(|layer| match layer {
-        Layer::Spectral(range) => Some(range.unwrap_or(USUAL_BINS)),
-        Layer::FirstHit(_) => None,
-    });
-    asked
-        .map(|range| Ok(BinGrid::new(range.from, range.to, range.step)?))
-        .transpose()
-}
-
-/// The OpenEXR file and the preview.
-fn paths(
-    arguments: &Render,
-    panel: Option<&str>,
-) -> Result<(PathBuf, Option<PathBuf>), CommandError> {
-    let output = match (&arguments.output, panel) {
-        (None, panel) => {
-            let stem = arguments.scene.scene.file_stem();
-            let stem = stem.map_or_else(|| OsString::from("picture"), OsString::from);
-            PathBuf::from(with_extension(with_panel(stem, panel), "exr"))
+/// Paths of the OpenEXR file and of the preview.
+fn paths(arguments: &Render, panel: Option<&str>) -> Result<(PathBuf, Option<PathBuf>), Failure> {
+    let all = arguments.scene.panel.as_deref() == Some("all");
+    let scene = &arguments.scene.scene;
+    let output = match &arguments.output {
+        None => {
+            let stem = scene.file_stem().unwrap_or(OsStr::new("picture"));
+            named(Path::new(""), stem, panel, Some(OsStr::new("exr")))
         }
-        (Some(output), Some(panel)) if arguments.panel_is_all() => before_extension(output, panel),
-        (Some(output), _) => output.clone(),
+        Some(output) if all => {
+            let stem = output.file_stem().unwrap_or_default();
+            named(output, stem, panel, output.extension())
+        }
+        Some(output) => output.clone(),
     };
-    if output
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("png"))
-    {
-        return Err(CommandError::NotPng(output));
+    let ending = output.extension();
+    if ending.is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+        return Err(format!(
+            "cannot write the picture to {}: it is OpenEXR, and the preview beside it is the PNG; \
+             name the output .exr",
+            output.display()
+        )
+        .into());
     }
-    if is_same_file(&output, &arguments.scene.scene) {
-        return Err(CommandError::OverScene(output));
+    let [picture, scene] = [&output, scene].map(|path| path.canonicalize().ok());
+    if picture.is_some() && picture == scene {
+        let output = output.display();
+        return Err(format!("cannot write the picture to {output}: that is the scene file").into());
     }
     let preview = (!is_stream(&output)).then(|| output.with_extension("png"));
     Ok((output, preview))
 }
 
-/// `stem` or `stem-panel`; a panel's name may hold what a file's may not.
-fn with_panel(mut stem: OsString, panel: Option<&str>) -> OsString {
+/// `stem-panel.extension` in the place of `path`; the stem may hold dots, and a panel's name what a
+/// file's may not.
+fn named(path: &Path, stem: &OsStr, panel: Option<&str>, extension: Option<&OsStr>) -> PathBuf {
+    let mut name = stem.to_owned();
     if let Some(panel) = panel {
-        stem.push("-");
-        stem.push(panel.replace(|c: char| "/\\:".contains(c) || c.is_control(), "_"));
+        name.push("-");
+        name.push(panel.replace(|c: char| "/\\:".contains(c) || c.is_control(), "_"));
     }
-    stem
+    if let Some(extension) = extension {
+        name.push(".");
+        name.push(extension);
+    }
+    path.with_file_name(name)
 }
 
-/// `stem.extension`; the stem may hold dots of its own.
-fn with_extension(mut stem: OsString, extension: impl AsRef<OsStr>) -> OsString {
-    stem.push(".");
-    stem.push(extension);
-    stem
-}
-
-/// `directory/stem-panel.extension`.
-fn before_extension(output: &Path, panel: &str) -> PathBuf {
-    let stem = output.file_stem().unwrap_or_default().to_owned();
-    let name = with_panel(stem, Some(panel));
-    let name = match output.extension() {
-        Some(extension) => with_extension(name, extension),
-        None => name,
-    };
-    output.with_file_name(name)
-}
-
-fn is_same_file(a: &Path, b: &Path) -> bool {
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+/// Whether a path names a device or pipe, which has no place beside it.
+fn is_stream(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
 }
 
 /// Checks that no two pictures go to the same file.
-pub fn distinct(jobs: &[Job]) -> Result<(), CommandError> {
-    for (index, job) in jobs.iter().enumerate() {
-        if jobs[..index].iter().any(|other| other.output == job.output) && !is_stream(&job.output) {
-            return Err(CommandError::SameOutput(job.output.clone()));
+pub fn distinct(jobs: &[Job]) -> Result<(), Failure> {
+    for (index, Job { output, .. }) in jobs.iter().enumerate() {
+        if jobs[..index].iter().any(|other| other.output == *output) && !is_stream(output) {
+            let output = output.display();
+            return Err(format!("two panels would be written to {output}").into());
         }
     }
     Ok(())

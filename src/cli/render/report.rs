@@ -1,30 +1,20 @@
-//! What a render has to say at its end.
+//! What is printed when a render has ended.
 
 use std::fmt::Write as _;
 
 use etalon::inside::render::goal::reached;
 use etalon::inside::scene::Image;
-use etalon::{Chosen, Goal, Rendered, Scene, Target};
+use etalon::{Chosen, Rendered, Scene, Target};
 
+use super::super::progress::interrupted;
 use super::super::quoted;
 use super::job::Job;
 
-/// A finished render and how it ended.
-pub struct Outcome<'a> {
-    /// The sums and what was measured.
-    pub rendered: &'a Rendered,
-    /// Whether the user ended it.
-    pub interrupted: bool,
-    /// The wanted error, how its samples were chosen, and the seconds that took.
-    pub chosen: Option<(Goal, Chosen, f64)>,
-}
-
-/// The lines on stdout: what was measured.
-pub fn lines(job: &Job, outcome: &Outcome<'_>) -> String {
-    let rendered = outcome.rendered;
+/// What was measured, in lines; `chosen` is how pilots chose the samples, and the seconds that took.
+pub fn lines(job: &Job, rendered: &Rendered, chosen: Option<(Chosen, f64)>) -> String {
     let image = &job.render.scene().image;
     let mut text = format!("{}: ", job.output.display());
-    if outcome.interrupted && rendered.samples < image.spp {
+    if interrupted() && rendered.samples < image.spp {
         text.push_str("interrupted after ");
     }
     text.push_str(&count(image, rendered));
@@ -44,7 +34,7 @@ pub fn lines(job: &Job, outcome: &Outcome<'_>) -> String {
             percent(share.standard_error)
         );
     }
-    if let Some((goal, chosen, seconds)) = &outcome.chosen {
+    if let (Some(goal), Some((chosen, seconds))) = (job.render.goal(), chosen) {
         let _ = write!(
             text,
             "; {} {} reached, {} asked for{}; pilots of {} spp in {seconds:.2} s chose the samples",

@@ -13,13 +13,6 @@ const WIDEST: f64 = 0.04;
 /// Width of what is detected as an edge or point, degrees.
 const FEATURE: f64 = 0.082;
 
-/// One number a pixel.
-#[derive(Debug, Clone)]
-pub struct Plane {
-    pub values: Vec<f64>,
-    pub width: usize,
-}
-
 /// Kernels of one resolution.
 pub struct Filters {
     /// By channel: terms of 1D kernels, with the weight of their product.
@@ -44,10 +37,9 @@ impl Filters {
                     (a * (pi / b).sqrt(), sampled(radius, value))
                 })
                 .collect();
-            let total: f64 = kernels
-                .iter()
-                .map(|(weight, kernel)| weight * kernel.iter().sum::<f64>().powi(2))
-                .sum();
+            let sums = kernels.iter();
+            let sums = sums.map(|(weight, kernel)| weight * kernel.iter().sum::<f64>().powi(2));
+            let total: f64 = sums.sum();
             for (weight, _) in &mut kernels {
                 *weight /= total;
             }
@@ -66,60 +58,54 @@ impl Filters {
         }
     }
 
-    /// A channel as the eye resolves it.
-    pub fn contrast(&self, plane: &Plane, channel: usize) -> Plane {
-        let mut sum = vec![0.0; plane.values.len()];
+    /// A channel of a picture as the eye resolves it, `width` pixels a row.
+    pub fn contrast(&self, values: &[f64], width: usize, channel: usize) -> Vec<f64> {
+        let mut sum = vec![0.0; values.len()];
         for (weight, kernel) in &self.contrast[channel] {
-            for (sum, value) in sum.iter_mut().zip(plane.filtered(kernel, kernel).values) {
+            for (sum, value) in sum.iter_mut().zip(filtered(values, width, kernel, kernel)) {
                 *sum += weight * value;
             }
         }
-        Plane {
-            values: sum,
-            width: plane.width,
-        }
+        sum
     }
 
     /// Strength of edges and of points: lengths of the gradient and of the second derivatives along
     /// x and y.
-    pub fn features(&self, grey: &Plane) -> Vec<[f64; 2]> {
-        let length = |kernel: &[f64]| -> Vec<f64> {
-            let across = grey.filtered(kernel, &self.gaussian).values;
-            let down = grey.filtered(&self.gaussian, kernel).values;
-            across.iter().zip(down).map(|(a, b)| a.hypot(b)).collect()
+    pub fn features(&self, grey: &[f64], width: usize) -> Vec<[f64; 2]> {
+        let length = |kernel: &[f64]| {
+            let across = filtered(grey, width, kernel, &self.gaussian);
+            let down = filtered(grey, width, &self.gaussian, kernel);
+            across.into_iter().zip(down).map(|(a, b)| a.hypot(b))
         };
         let edges = length(&self.first_derivative);
         let points = length(&self.second_derivative);
-        edges.into_iter().zip(points).map(|(e, p)| [e, p]).collect()
+        edges
+            .zip(points)
+            .map(|(edge, point)| [edge, point])
+            .collect()
     }
 }
 
-impl Plane {
-    /// Filtered along the rows by one kernel and along the columns by another.
-    fn filtered(&self, along: &[f64], down: &[f64]) -> Self {
-        let (width, height) = (self.width, self.values.len() / self.width);
-        let pass = |values: &[f64], kernel: &[f64], step: [usize; 2]| -> Vec<f64> {
-            let radius = kernel.len() as isize / 2;
-            let at = |x: usize, y: usize, offset: isize| {
-                let moved = |at: usize, step: usize, size: usize| {
-                    (at as isize + offset * step as isize).clamp(0, size as isize - 1) as usize
-                };
-                values[moved(y, step[1], height) * width + moved(x, step[0], width)]
+/// Filters along the rows by one kernel and along the columns by another.
+fn filtered(values: &[f64], width: usize, along: &[f64], down: &[f64]) -> Vec<f64> {
+    let height = values.len() / width;
+    let pass = |values: &[f64], kernel: &[f64], step: [usize; 2]| -> Vec<f64> {
+        let radius = kernel.len() as isize / 2;
+        let at = |x: usize, y: usize, offset: isize| {
+            let moved = |at: usize, step: usize, size: usize| {
+                (at as isize + offset * step as isize).clamp(0, size as isize - 1) as usize
             };
-            let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-            pixels
-                .map(|(x, y)| {
-                    let terms = kernel.iter().zip(-radius..);
-                    terms.map(|(k, offset)| k * at(x, y, offset)).sum()
-                })
-                .collect()
+            values[moved(y, step[1], height) * width + moved(x, step[0], width)]
         };
-        let rows = pass(&self.values, along, [1, 0]);
-        Self {
-            values: pass(&rows, down, [0, 1]),
-            width,
-        }
-    }
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        pixels
+            .map(|(x, y)| {
+                let terms = kernel.iter().zip(-radius..);
+                terms.map(|(k, offset)| k * at(x, y, offset)).sum()
+            })
+            .collect()
+    };
+    pass(&pass(values, along, [1, 0]), down, [0, 1])
 }
 
 /// Values at −radius, …, radius.

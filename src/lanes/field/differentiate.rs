@@ -38,29 +38,16 @@ fn three<R>(f: impl Fn(usize) -> R) -> [R; 3] {
 }
 
 impl<A: Differentiable> Gradients<'_, A> {
-    #[inline(always)]
-    fn product(&self, a: &A::Value, b: &A::Value) -> A::Value {
-        self.0.binary(Binary::Product, a, b)
-    }
-
-    #[inline(always)]
-    fn quotient(&self, a: &A::Value, b: &A::Value) -> A::Value {
-        self.0.binary(Binary::Quotient, a, b)
-    }
-
-    #[inline(always)]
-    fn sum(&self, a: &A::Value, b: &A::Value) -> A::Value {
-        self.0.binary(Binary::Sum, a, b)
-    }
-
-    #[inline(always)]
-    fn difference(&self, a: &A::Value, b: &A::Value) -> A::Value {
-        self.0.binary(Binary::Difference, a, b)
-    }
-
-    #[inline(always)]
-    fn negative(&self, a: &A::Value) -> A::Value {
-        self.0.unary(Unary::Negative, a)
+    methods! {
+        fn product(&self, a: &A::Value, b: &A::Value) -> A::Value =
+            self.0.binary(Binary::Product, a, b);
+        fn quotient(&self, a: &A::Value, b: &A::Value) -> A::Value =
+            self.0.binary(Binary::Quotient, a, b);
+        fn sum(&self, a: &A::Value, b: &A::Value) -> A::Value = self.0.binary(Binary::Sum, a, b);
+        fn difference(&self, a: &A::Value, b: &A::Value) -> A::Value =
+            self.0.binary(Binary::Difference, a, b);
+        fn negative(&self, a: &A::Value) -> A::Value = self.0.unary(Unary::Negative, a);
+        fn root(&self, a: &A::Value) -> A::Value = self.0.unary(Unary::SquareRoot, a);
     }
 
     /// The slope of f at a, where f(a) = `value` (all but the sign of |a|).
@@ -69,10 +56,7 @@ impl<A: Differentiable> Gradients<'_, A> {
         let one = || self.0.number(1.0);
         let reciprocal = |x: &A::Value| self.quotient(&one(), x);
         let square = |x: &A::Value| self.product(x, x);
-        let below_unit = || {
-            self.0
-                .unary(Unary::SquareRoot, &self.difference(&one(), &square(a)))
-        };
+        let below_unit = || self.root(&self.difference(&one(), &square(a)));
         match function {
             Unary::Negative => self.0.number(-1.0),
             Unary::SquareRoot => reciprocal(&self.sum(value, value)),
@@ -150,9 +134,10 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
 
     #[inline(always)]
     fn coordinate(&self, axis: usize) -> Self::Value {
+        let gradient = three(inlined!(|i: usize| (i == axis).then(|| self.0.number(1.0))));
         WithGradient {
             value: self.0.coordinate(axis),
-            gradient: three(inlined!(|i: usize| (i == axis).then(|| self.0.number(1.0)))),
+            gradient,
         }
     }
 
@@ -167,16 +152,14 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
     #[inline(always)]
     fn unary(&self, function: Unary, a: &Self::Value) -> Self::Value {
         let value = self.0.unary(function, &a.value);
-        if function == Unary::Negative {
-            let gradient = self.all(a, inlined!(|d: &A::Value| self.negative(d)));
-            return WithGradient { value, gradient };
-        }
-        if a.gradient.iter().all(Option::is_none) {
-            let gradient = [None, None, None];
-            return WithGradient { value, gradient };
-        }
-        let slope = self.slope(function, &a.value, &value);
-        let gradient = self.all(a, inlined!(|d: &A::Value| self.product(&slope, d)));
+        let gradient = if function == Unary::Negative {
+            self.all(a, inlined!(|d: &A::Value| self.negative(d)))
+        } else if a.gradient.iter().all(Option::is_none) {
+            [None, None, None]
+        } else {
+            let slope = self.slope(function, &a.value, &value);
+            self.all(a, inlined!(|d: &A::Value| self.product(&slope, d)))
+        };
         WithGradient { value, gradient }
     }
 
@@ -184,48 +167,34 @@ impl<A: Differentiable> Algebra for Gradients<'_, A> {
     fn binary(&self, function: Binary, a: &Self::Value, b: &Self::Value) -> Self::Value {
         let (x, y) = (&a.value, &b.value);
         let value = self.0.binary(function, x, y);
-        let same = inlined!(|d: &A::Value| d.clone());
+        // p·da + q·db, with p and q given as functions of da and db.
+        macro_rules! combined {
+            (|$da:ident| $p:expr, |$db:ident| $q:expr) => {{
+                let p = inlined!(|$da: &A::Value| $p);
+                self.combined(a, b, p, inlined!(|$db: &A::Value| $q))
+            }};
+        }
         let gradient = match function {
-            Binary::Sum => self.combined(a, b, same, same),
-            Binary::Difference => {
-                self.combined(a, b, same, inlined!(|d: &A::Value| self.negative(d)))
-            }
-            Binary::Product => self.combined(
-                a,
-                b,
-                inlined!(|d: &A::Value| self.product(d, y)),
-                inlined!(|d: &A::Value| self.product(d, x)),
-            ),
-            Binary::Quotient => self.combined(
-                a,
-                b,
-                inlined!(|d: &A::Value| self.quotient(d, y)),
-                inlined!(|d: &A::Value| self.negative(&self.quotient(&self.product(&value, d), y))),
-            ),
+            Binary::Sum => combined!(|da| da.clone(), |db| db.clone()),
+            Binary::Difference => combined!(|da| da.clone(), |db| self.negative(db)),
+            Binary::Product => combined!(|da| self.product(da, y), |db| self.product(db, x)),
+            Binary::Quotient => combined!(|da| self.quotient(da, y), |db| self
+                .negative(&self.quotient(&self.product(&value, db), y))),
             Binary::Minimum => self.chosen(&self.difference(x, y), a, b),
             Binary::Maximum => self.chosen(&self.difference(x, y), b, a),
             // a is the ordinate: d atan2(a, b) = (b da − a db)/(a² + b²).
             Binary::ArcTangent2 => {
                 let square = self.sum(&self.product(x, x), &self.product(y, y));
-                self.combined(
-                    a,
-                    b,
-                    inlined!(|d: &A::Value| self.quotient(&self.product(y, d), &square)),
-                    inlined!(
-                        |d: &A::Value| self.negative(&self.quotient(&self.product(x, d), &square))
-                    ),
-                )
+                combined!(|da| self.quotient(&self.product(y, da), &square), |db| self
+                    .negative(&self.quotient(&self.product(x, db), &square)))
             }
             // d aᵇ = aᵇ (b/a da + ln a db).
-            Binary::Power => self.combined(
-                a,
-                b,
-                inlined!(
-                    |d: &A::Value| self.product(&value, &self.quotient(&self.product(y, d), x))
-                ),
-                inlined!(|d: &A::Value| self
-                    .product(&value, &self.product(&self.0.unary(Unary::Logarithm, x), d))),
-            ),
+            Binary::Power => {
+                let part = inlined!(|d: &A::Value| self.product(&value, d));
+                combined!(|da| part(&self.quotient(&self.product(y, da), x)), |db| {
+                    part(&self.product(&self.0.unary(Unary::Logarithm, x), db))
+                })
+            }
         };
         WithGradient { value, gradient }
     }

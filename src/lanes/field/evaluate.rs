@@ -1,4 +1,4 @@
-//! Tapes in f64: the value and the gradient of a field at a point.
+//! Tapes in lanes of either precision, of which f64 at a point is one: values and gradients.
 
 use std::ops::Mul;
 
@@ -6,23 +6,86 @@ use glam::DVec3;
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
 
-use super::differentiate::{Differentiable, Gradients};
+use super::differentiate::{Differentiable, Gradients, WithGradient};
 use super::tape::{Algebra, Binary, Tape, Unary};
+use crate::math::lanes::{Lanes, Real, Scalar};
+use crate::math::scalar_lane::One;
+use crate::math::vec3::Vec3;
 
-/// A tape with its constants rounded to f64 once.
+/// A tape with its constants rounded once.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Field {
+pub struct Field<T = f64> {
     tape: Tape,
-    constants: Vec<f64>,
+    constants: Vec<T>,
 }
 
-impl Field {
+/// Room for the results of a tape at `W` packets, so that they need not be allocated each time.
+pub struct Scratch<L: Lanes, const W: usize>(Vec<[L::Real; W]>);
+
+impl<L: Lanes, const W: usize> Default for Scratch<L, W> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<T: Scalar> Field<T> {
     pub fn new(tape: &Tape) -> Self {
-        let constants = tape.constants().iter().map(nearest).collect();
+        let rounded = |c: &BigRational| T::from_f64(nearest(c));
+        let constants = tape.constants().iter().map(rounded).collect();
         let tape = tape.clone();
         Self { tape, constants }
     }
 
+    /// The field at object points, negative inside; NaN where it is undefined. Several packets
+    /// at once share the work of reading the tape.
+    #[inline(always)]
+    pub fn values<L: Lanes<Scalar = T>, const W: usize>(
+        &self,
+        l: L,
+        points: [Vec3<L::Real>; W],
+        scratch: &mut Scratch<L, W>,
+    ) -> [L::Real; W] {
+        let values = self.tape.evaluate(&self.at(l, points), &mut scratch.0);
+        values.unwrap_or_else(|| [l.real(f64::NAN); W])
+    }
+
+    /// Its value and its gradient; not finite where that is undefined.
+    #[inline(always)]
+    pub fn with_gradient<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        p: Vec3<L::Real>,
+    ) -> (L::Real, Vec3<L::Real>) {
+        let packet = self.at(l, [p]);
+        let found = self.tape.evaluate(&Gradients(&packet), &mut Vec::new());
+        let Some(WithGradient { value, gradient }) = found else {
+            let nothing = l.real(f64::NAN);
+            return (nothing, Vec3::new(nothing, nothing, nothing));
+        };
+        let [x, y, z] = gradient.map(|d| d.map_or(l.real(0.0), |[d]| d));
+        (value[0], Vec3::new(x, y, z))
+    }
+
+    #[inline(always)]
+    fn at<L: Lanes<Scalar = T>, const W: usize>(
+        &self,
+        lanes: L,
+        points: [Vec3<L::Real>; W],
+    ) -> Packets<'_, L, W> {
+        let zero = lanes.real(0.0);
+        Packets {
+            lanes,
+            constants: &self.constants,
+            points: [
+                each(zero, inlined!(|i: usize| points[i].x)),
+                each(zero, inlined!(|i: usize| points[i].y)),
+                each(zero, inlined!(|i: usize| points[i].z)),
+            ],
+        }
+    }
+}
+
+impl Field {
     pub fn tape(&self) -> &Tape {
         &self.tape
     }
@@ -34,24 +97,14 @@ impl Field {
 
     /// f(p); NaN where it is undefined.
     pub fn value(&self, p: DVec3) -> f64 {
-        let value = self.tape.evaluate(&self.at(p), &mut Vec::new());
-        value.unwrap_or(f64::NAN)
+        let [value] = self.values(One, [Vec3::splat(One, p)], &mut Scratch::default());
+        value
     }
 
     /// ∇f(p); not finite where it is undefined.
     pub fn gradient(&self, p: DVec3) -> DVec3 {
-        let numbers = self.at(p);
-        let found = self.tape.evaluate(&Gradients(&numbers), &mut Vec::new());
-        found.map_or(DVec3::NAN, |found| {
-            DVec3::from_array(found.gradient.map(|d| d.unwrap_or(0.0)))
-        })
-    }
-
-    fn at(&self, point: DVec3) -> Numbers<'_> {
-        Numbers {
-            constants: &self.constants,
-            point,
-        }
+        let (_, Vec3 { x, y, z }) = self.with_gradient(One, Vec3::splat(One, p));
+        DVec3::new(x, y, z)
     }
 }
 
@@ -60,43 +113,126 @@ pub fn nearest(exact: &BigRational) -> f64 {
     exact.to_f64().unwrap_or(f64::NAN)
 }
 
-struct Numbers<'a> {
-    constants: &'a [f64],
-    point: DVec3,
+struct Packets<'a, L: Lanes, const W: usize> {
+    lanes: L,
+    constants: &'a [L::Scalar],
+    points: [[L::Real; W]; 3],
 }
 
-impl Algebra for Numbers<'_> {
-    type Value = f64;
-
-    fn coordinate(&self, axis: usize) -> f64 {
-        self.point[axis]
+/// An array by index, made from `start`. The functions that the standard library has for this are
+/// not sure to be inlined, and what calculates in lanes must be.
+#[inline(always)]
+pub fn each<R: Copy, const W: usize>(start: R, f: impl Fn(usize) -> R) -> [R; W] {
+    let mut array = [start; W];
+    for (i, value) in array.iter_mut().enumerate() {
+        *value = f(i);
     }
+    array
+}
 
-    fn constant(&self, index: usize, _: &BigRational) -> f64 {
-        self.constants[index]
+/// A function of a lane's number and its value in f64, one lane after the other.
+#[inline(never)]
+fn by_lane<L: Lanes>(l: L, a: L::Real, f: impl Fn(usize, f64) -> f64) -> L::Real {
+    let mut result = a;
+    for i in 0..L::COUNT {
+        let value = f(i, l.lane(a, i).to_f64());
+        result = l.with_lane(result, i, L::Scalar::from_f64(value));
     }
+    result
+}
 
-    fn unary(&self, f: Unary, a: &f64) -> f64 {
-        unary(f, *a)
-    }
-
-    fn binary(&self, function: Binary, a: &f64, b: &f64) -> f64 {
-        binary(function, *a, *b)
-    }
-
-    fn whole_power(&self, a: &f64, n: i32) -> f64 {
-        let power = repeated(*a, n.unsigned_abs(), 1.0);
-        if n < 0 { 1.0 / power } else { power }
+/// A function of two values, computed in lanes where it is one of arithmetic.
+#[inline(always)]
+fn of_two<L: Lanes>(l: L, function: Binary, a: L::Real, b: L::Real) -> L::Real {
+    match function {
+        Binary::Sum => a + b,
+        Binary::Difference => a - b,
+        Binary::Product => a * b,
+        Binary::Quotient => a / b,
+        Binary::Minimum => a.min(b),
+        Binary::Maximum => a.max(b),
+        Binary::ArcTangent2 | Binary::Power => by_lane(l, a, |i, x| {
+            let y = l.lane(b, i).to_f64();
+            binary(function, x, y)
+        }),
     }
 }
 
-impl Differentiable for Numbers<'_> {
-    fn number(&self, x: f64) -> f64 {
-        x
+impl<L: Lanes, const W: usize> Packets<'_, L, W> {
+    #[inline(always)]
+    fn each(&self, f: impl Fn(usize) -> L::Real) -> [L::Real; W] {
+        each(self.lanes.real(0.0), f)
+    }
+}
+
+impl<L: Lanes, const W: usize> Algebra for Packets<'_, L, W> {
+    type Value = [L::Real; W];
+    methods! {
+        fn coordinate(&self, axis: usize) -> Self::Value = self.points[axis];
+        fn constant(&self, index: usize, _: &BigRational) -> Self::Value =
+            [self.lanes.splat(self.constants[index]); W];
     }
 
-    fn where_negative(&self, s: &f64, below: &f64, above: &f64) -> f64 {
-        if *s < 0.0 { *below } else { *above }
+    #[inline(always)]
+    fn unary(&self, function: Unary, a: &Self::Value) -> Self::Value {
+        match function {
+            Unary::Negative => self.each(inlined!(|i: usize| -a[i])),
+            Unary::SquareRoot => self.each(inlined!(|i: usize| a[i].sqrt())),
+            Unary::Absolute => self.each(inlined!(|i: usize| a[i].abs())),
+            _ => {
+                let of = |_, x| unary(function, x);
+                self.each(inlined!(|i: usize| by_lane(self.lanes, a[i], of)))
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn binary(&self, function: Binary, a: &Self::Value, b: &Self::Value) -> Self::Value {
+        // The function is told apart once, not for each packet.
+        macro_rules! known {
+            ($function:expr) => {
+                self.each(inlined!(|i: usize| of_two(
+                    self.lanes, $function, a[i], b[i]
+                )))
+            };
+        }
+        match function {
+            Binary::Sum => known!(Binary::Sum),
+            Binary::Difference => known!(Binary::Difference),
+            Binary::Product => known!(Binary::Product),
+            _ => known!(function),
+        }
+    }
+
+    #[inline(always)]
+    fn whole_power(&self, a: &Self::Value, n: i32) -> Self::Value {
+        if n == 2 {
+            return self.each(inlined!(|i: usize| a[i] * a[i]));
+        }
+        let one = self.lanes.real(1.0);
+        self.each(inlined!(|i: usize| {
+            let power = repeated(a[i], n.unsigned_abs(), one);
+            if n < 0 { one / power } else { power }
+        }))
+    }
+}
+
+impl<L: Lanes, const W: usize> Differentiable for Packets<'_, L, W> {
+    methods! { fn number(&self, x: f64) -> Self::Value = [self.lanes.real(x); W]; }
+
+    #[inline(always)]
+    fn where_negative(
+        &self,
+        s: &Self::Value,
+        below: &Self::Value,
+        above: &Self::Value,
+    ) -> Self::Value {
+        let (l, zero) = (self.lanes, self.lanes.real(0.0));
+        self.each(inlined!(|i: usize| l.select(
+            s[i].lt(zero),
+            below[i],
+            above[i]
+        )))
     }
 }
 
@@ -144,20 +280,8 @@ pub fn binary(function: Binary, a: f64, b: f64) -> f64 {
         Binary::Difference => a - b,
         Binary::Product => a * b,
         Binary::Quotient => a / b,
-        Binary::Minimum => {
-            if a < b {
-                a
-            } else {
-                b
-            }
-        }
-        Binary::Maximum => {
-            if a > b {
-                a
-            } else {
-                b
-            }
-        }
+        Binary::Minimum => Real::min(a, b),
+        Binary::Maximum => Real::max(a, b),
         Binary::ArcTangent2 => libm::atan2(a, b),
         Binary::Power if a < 0.0 => f64::NAN,
         Binary::Power => libm::pow(a, b),

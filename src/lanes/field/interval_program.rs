@@ -91,10 +91,7 @@ impl IntervalProgram {
         registers: &mut Vec<Jet<L>>,
     ) -> (Jet<L>, Domain<L>) {
         l.vectorize(inlined!(|| {
-            let anything = Jet {
-                value: Interval::whole(l),
-                slope: Interval::whole(l),
-            };
+            let anything = Jet::new(Interval::whole(l), Interval::whole(l));
             let mut domain = Domain::unbroken(l);
             let jet = self.run(l, coordinates, anything, registers, &mut domain);
             (jet, domain)

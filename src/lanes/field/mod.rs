@@ -2,15 +2,14 @@
 //!
 //! [`expression`] reads the text of a scene file, [`tape`] holds the operations, [`polynomial`] and
 //! [`program`] are the forms that exact and certified root finding needs. A tape is evaluated in f64
-//! ([`evaluate`]), in lanes ([`lanes`]), with a running error bound ([`bounded`]) or in intervals
-//! ([`interval_program`]). Where a ray meets the zeros of a field is the business of `shape::implicit`.
+//! or in lanes ([`evaluate`]), with a running error bound ([`bounded`]) or in intervals
+//! ([`interval_program`]). Where a ray meets the zeros of a field is left to `shape::implicit`.
 
 pub mod bounded;
 pub mod differentiate;
 pub mod evaluate;
 pub mod expression;
 pub mod interval_program;
-pub mod lanes;
 pub mod named;
 pub mod normal;
 pub mod outer;

@@ -74,31 +74,25 @@ impl Job<f64> for Survey<'_> {
             [0, 1, 2].map(|axis| std::array::from_fn(|i| self.edge(axis, i)));
         for part in 0..PARTS * PARTS {
             let (y, z) = (part / PARTS, part % PARTS);
-            let mut x = 0;
-            while x < PARTS {
+            for x in (0..PARTS).step_by(L::COUNT) {
                 let place = [
                     Interval::new(l, l.load(&edges[0][x..]), l.load(&edges[0][x + 1..])),
                     Interval::splat(l, [edges[1][y], edges[1][y + 1]]),
                     Interval::splat(l, [edges[2][z], edges[2][z + 1]]),
                 ];
                 let mut squares = Interval::splat(l, [0.0, 0.0]);
-                let mut axis = 0;
-                while axis < 3 {
+                for axis in 0..3 {
                     let along = coordinates(&place, axis);
                     let (jet, domain) = self.program.jet(l, &along, &mut registers);
                     squares = squares + jet.slope.squared();
                     known.undefined &= domain.void.bits() == every;
                     known.maybe_undefined |= domain.broken.bits() != 0;
                     known.empty &= (jet.value.may_be_zero() & !domain.void).bits() == 0;
-                    axis += 1;
                 }
                 let length = squares.square_root().high;
-                let mut lane = 0;
-                while lane < L::COUNT {
+                for lane in 0..L::COUNT {
                     known.steepness = known.steepness.max(l.lane(length, lane));
-                    lane += 1;
                 }
-                x += L::COUNT;
             }
         }
         known
@@ -109,13 +103,9 @@ impl Job<f64> for Survey<'_> {
 #[inline(always)]
 fn coordinates<L: DoubleLanes>(place: &[Interval<L>; 3], axis: usize) -> [Jet<L>; 3] {
     let l = place[0].lanes;
-    let slope = |i: usize| {
-        let x = if i == axis { 1.0 } else { 0.0 };
-        Interval::splat(l, [x, x])
-    };
-    let jet = |i: usize| Jet {
-        value: place[i],
-        slope: slope(i),
-    };
+    let jet = inlined!(|i: usize| {
+        let slope = if i == axis { 1.0 } else { 0.0 };
+        Jet::new(place[i], Interval::splat(l, [slope, slope]))
+    });
     [jet(0), jet(1), jet(2)]
 }

@@ -75,27 +75,18 @@ impl Polynomial {
             common = -common;
         }
         if !common.is_one() {
-            self.divide(&common);
+            for coefficient in self.terms.values_mut() {
+                *coefficient /= &common;
+            }
             self.denominator /= common;
         }
         self
-    }
-
-    fn divide(&mut self, divisor: &BigInt) {
-        for coefficient in self.terms.values_mut() {
-            *coefficient /= divisor;
-        }
     }
 
     /// Coefficients other than zero, in lexical order of the exponents.
     pub fn terms(&self) -> impl Iterator<Item = (Exponents, BigRational)> + '_ {
         let rational = |c: &BigInt| BigRational::new(c.clone(), self.denominator.clone());
         self.terms.iter().map(move |(e, c)| (*e, rational(c)))
-    }
-
-    /// Coefficients × [`Self::denominator`].
-    pub fn numerators(&self) -> impl Iterator<Item = (Exponents, &BigInt)> + '_ {
-        self.terms.iter().map(|(e, c)| (*e, c))
     }
 
     /// The least positive integer that makes all coefficients integers.
@@ -117,44 +108,10 @@ impl Polynomial {
         self.degree() == 0
     }
 
-    /// The positive multiple with coprime integer coefficients: the same signs, the same zeros.
-    pub fn primitive(&self) -> Self {
-        let content = self
-            .terms
-            .values()
-            .fold(BigInt::zero(), |common, c| common.gcd(c));
-        let mut primitive = self.clone();
-        if !content.is_zero() {
-            primitive.divide(&content);
-        }
-        primitive.denominator = BigInt::one();
-        primitive
-    }
-
-    pub fn derivative(&self, axis: usize) -> Self {
-        let lowered = self
-            .terms
-            .iter()
-            .filter(|(e, _)| e[axis] > 0)
-            .map(|(e, c)| {
-                let mut exponents = *e;
-                exponents[axis] -= 1;
-                (exponents, c * e[axis])
-            });
-        Self::new(lowered, self.denominator.clone())
-    }
-
-    pub fn gradient(&self) -> [Self; 3] {
-        [0, 1, 2].map(|axis| self.derivative(axis))
-    }
-
     pub fn plus(&self, other: &Self) -> Self {
-        let scale = |a: &Self, by: &BigInt| -> Vec<_> {
-            a.terms.iter().map(|(e, c)| (*e, c * by)).collect()
-        };
-        let mut terms = scale(self, &other.denominator);
-        terms.extend(scale(other, &self.denominator));
-        Self::new(terms, &self.denominator * &other.denominator)
+        let ours = self.terms.iter().map(|(e, c)| (*e, c * &other.denominator));
+        let theirs = other.terms.iter().map(|(e, c)| (*e, c * &self.denominator));
+        Self::new(ours.chain(theirs), &self.denominator * &other.denominator)
     }
 
     pub fn minus(&self, other: &Self) -> Self {
@@ -170,67 +127,12 @@ impl Polynomial {
     }
 
     pub fn times(&self, other: &Self) -> Self {
-        let mut products = BTreeMap::<Exponents, BigInt>::new();
-        for (e, a) in &self.terms {
-            for (f, b) in &other.terms {
-                let exponents = [e[0] + f[0], e[1] + f[1], e[2] + f[2]];
-                *products.entry(exponents).or_default() += a * b;
-            }
-        }
-        Self {
-            terms: products,
-            denominator: &self.denominator * &other.denominator,
-        }
-        .reduced()
-    }
-
-    pub fn value(&self, point: &[BigRational; 3]) -> BigRational {
-        let degrees = [0, 1, 2].map(|i| self.terms.keys().map(|e| e[i]).max().unwrap_or(0));
-        let powers = [0, 1, 2].map(|i| Powers::new(&point[i], degrees[i]));
-        let mut sum = BigInt::zero();
-        for (exponents, coefficient) in &self.terms {
-            let factors = [0, 1, 2].map(|i| powers[i].at(exponents[i]));
-            sum += coefficient * &factors[0] * &factors[1] * &factors[2];
-        }
-        let scale = powers.iter().map(|p| &p.denominator[p.degree()]);
-        BigRational::new(sum, scale.fold(self.denominator.clone(), |a, b| a * b))
-    }
-
-    /// The exact value at a point of f64 coordinates; `None` where one of them is not finite.
-    pub fn value_at(&self, point: [f64; 3]) -> Option<BigRational> {
-        let [x, y, z] = point.map(BigRational::from_float);
-        Some(self.value(&[x?, y?, z?]))
-    }
-}
-
-/// Powers of a fraction's numerator and denominator.
-struct Powers {
-    numerator: Vec<BigInt>,
-    denominator: Vec<BigInt>,
-}
-
-impl Powers {
-    fn new(base: &BigRational, degree: u32) -> Self {
-        let powers = |base: &BigInt| {
-            let next = |power: &BigInt| Some(power * base);
-            std::iter::successors(Some(BigInt::one()), next)
-                .take(degree as usize + 1)
-                .collect()
-        };
-        Self {
-            numerator: powers(base.numer()),
-            denominator: powers(base.denom()),
-        }
-    }
-
-    fn degree(&self) -> usize {
-        self.denominator.len() - 1
-    }
-
-    /// Base to the power n, times the denominator to the power of the degree.
-    fn at(&self, n: u32) -> BigInt {
-        let n = n as usize;
-        &self.numerator[n] * &self.denominator[self.degree() - n]
+        let sum = |e: &Exponents, f: &Exponents| [e[0] + f[0], e[1] + f[1], e[2] + f[2]];
+        let products = self.terms.iter().flat_map(|(e, a)| {
+            let product = move |(f, b): (&Exponents, &BigInt)| (sum(e, f), a * b);
+            other.terms.iter().map(product)
+        });
+        Self::new(products, &self.denominator * &other.denominator)
     }
 }
 

@@ -1,13 +1,10 @@
 //! One segment of every path: find the surface, take its light, sample the lights, scatter.
 
 use super::chunk::{CHUNK, Workspace};
-use super::intersect::{Leaving, NOTHING, Rungs, lane_vector, nearest};
+use super::intersect::{NOTHING, Rays, lane_vector, nearest};
 use super::model::Model;
 use super::parts::word;
-use super::pool::{
-    Carried, IntField, Pool, RealField, Rows, WIDEST, any, array, bit_where, each, flags, has,
-    int_array,
-};
+use super::pool::{Carried, Paths, WIDEST, array, bit_where, each, flags, has, int_array};
 use super::replay::{ScatteredVertex, Vertex};
 use super::scatter::{Meeting, Scattered};
 use super::surface::{Arrival, Surfaces, surfaces};
@@ -28,120 +25,76 @@ pub const BEYOND_SHARE: f64 = 1.0 / 16.0;
 
 /// A packet of paths on its way through the step.
 pub struct Step<'a, L: Lanes, const C: usize> {
-    /// The scene's tables.
     pub model: &'a Model<L::Scalar>,
-    /// Spectra by sample.
-    pub rows: &'a mut Rows<L::Scalar, C>,
-    /// Which arithmetic decided.
-    pub rungs: &'a mut Rungs,
-    /// Rows of the paths that go on beyond `max_depth`.
-    pub beyond_slots: &'a mut Vec<u32>,
-    /// The bsdf of each lane towards the sampled light, where the material is not Lambertian.
-    pub values: &'a mut [[L::Scalar; C]; WIDEST],
-    /// The vertex being written down, of lane 0.
-    pub vertex: Option<&'a mut Vertex>,
-    /// Where the spectra of each lane are.
+    pub workspace: &'a mut Workspace<L::Scalar, C>,
+    /// As the pool had them, but for flags that change on the way.
+    pub paths: Paths<L>,
+    /// Where the spectra of each lane are among the rows.
     pub slots: [u32; WIDEST],
-    /// Which row of every table holds the wavelengths.
-    pub row: L::Int,
-    /// Bits of [`flags`].
-    pub flags: L::Int,
-    /// Segments traced before this one.
-    pub depth: L::Int,
-    /// Which random numbers are theirs.
-    pub id: Identity<L>,
 }
 
-/// Where in the pool a packet stands, and where its survivors go.
-#[derive(Debug, Clone, Copy)]
-pub struct Places {
-    pub at: usize,
-    /// Its survivors, not after it.
-    pub to: usize,
-}
-
-/// Advances a packet by one segment and returns how many of its paths go on.
+/// Advances the packet at `at` by one segment, writes the paths that go on from place `to` ≤ `at` on, and
+/// returns their number.
 #[inline(always)]
 pub fn bounce<L: Lanes, const C: usize>(
     l: L,
     model: &Model<L::Scalar>,
     workspace: &mut Workspace<L::Scalar, C>,
-    Places { at, to }: Places,
+    at: usize,
+    to: usize,
 ) -> usize {
-    let Workspace {
-        pool,
-        rows,
-        beyond_slots,
-        rungs,
-        values,
-        trace,
-        ..
-    } = workspace;
-    let active = l.mask_from_bits(pool.active::<L>(at));
-    let ray = LaneRay::<L>::new(
-        l,
-        vector(l, pool, RealField::Origin, at),
-        vector(l, pool, RealField::Direction, at),
-    );
-    let mut step = Step::<L, C> {
-        model,
-        rows,
-        rungs,
-        beyond_slots,
-        values,
-        vertex: None,
-        slots: int_array(l, pool.int(l, IntField::Slot, at)),
-        row: pool.int(l, IntField::Row, at),
-        flags: pool.int(l, IntField::Flags, at),
-        depth: pool.int(l, IntField::Depth, at),
-        id: Identity {
-            key: pool.int(l, IntField::Key, at),
-            index: pool.int(l, IntField::Index, at),
-        },
-    };
-    let leaving = Leaving {
-        object: pool.int(l, IntField::Departure, at),
-        inward: has(l, step.flags, flags::INWARD),
+    let (paths, active) = workspace.pool.read(l, at);
+    let rays = Rays {
+        ray: LaneRay::new(l, paths.origin, paths.direction),
+        leaving: paths.leaving,
+        inward: has(l, paths.flags, flags::INWARD),
     };
     let arrival = Arrival {
-        ray: &ray,
-        leaving: &leaving,
-        nearest: nearest(l, model, &ray, &leaving, active, step.rungs),
-        pdf: pool.real(l, RealField::Pdf, 0, at),
-        specular: has(l, step.flags, flags::SPECULAR),
+        rays: &rays,
+        nearest: nearest(l, model, &rays, active, &mut workspace.rungs),
+        pdf: paths.pdf,
+        specular: has(l, paths.flags, flags::SPECULAR),
+    };
+    let mut step = Step {
+        model,
+        workspace,
+        slots: int_array(l, paths.slot),
+        paths,
     };
     let hit = active & !arrival.nearest.part.same(l.int(NOTHING));
     if let Some(environment) = model.environment {
         step.add(l, active & !hit, l.int(environment), l.real(1.0));
     }
     let surface = surfaces(l, model, &arrival, hit);
-    let mut vertex = trace.is_some().then(|| step.vertex(l, &arrival, &surface));
-    step.vertex = vertex.as_mut();
+    step.note_arrival(l, &arrival, &surface);
     let going = step.arrive(l, &surface, hit);
     let meeting = Meeting {
         surface: &surface,
-        direction: ray.direction,
+        wo: -paths.direction,
         normal: Vec3::select(l, surface.front, surface.normal, -surface.normal),
         going,
-        kinds: model.needs.materials,
     };
     let next = step.scatter(l, &meeting);
     let alive = active & step.roulette(l, going);
     step.note_end(l, &next, alive);
-    step.keep(l, pool, &meeting, &next, (to, alive));
-    if let (Some(trace), Some(vertex)) = (trace, vertex) {
-        trace.push(vertex);
-    }
+    let kept = step.paths.flags & l.int(flags::TERMINATED | flags::BEYOND);
+    let survivors = Paths {
+        origin: surface.point,
+        direction: next.direction,
+        pdf: next.pdf,
+        leaving: surface.object,
+        flags: kept
+            | bit_where(l, next.inward, flags::INWARD)
+            | bit_where(l, next.specular, flags::SPECULAR),
+        id: Identity {
+            bounce: step.depth(l),
+            ..paths.id
+        },
+        slot: l.load_int(&step.slots),
+        row: paths.row,
+    };
+    step.workspace.pool.keep(l, to, &survivors, alive);
     alive.bits().count_ones() as usize
-}
-
-#[inline(always)]
-fn vector<L: Lanes>(l: L, pool: &Pool<L::Scalar>, field: RealField, at: usize) -> Vec3<L::Real> {
-    Vec3::new(
-        pool.real(l, field, 0, at),
-        pool.real(l, field, 1, at),
-        pool.real(l, field, 2, at),
-    )
 }
 
 /// An object's index unless it is [`NOTHING`].
@@ -158,12 +111,12 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             self.add(l, surface.emits, surface.emission, surface.emission_weight);
         }
         let scatters = hit & !surface.kind.same(l.int(MaterialKind::Black as u32));
-        let beyond = has(l, self.flags, flags::BEYOND);
-        let within = self.depth.plus(l.int(1)).below(l.int(model.max_depth));
+        let beyond = has(l, self.paths.flags, flags::BEYOND);
+        let within = self.depth(l).below(l.int(model.max_depth));
         let mut going = scatters & (within | beyond);
         let cut = scatters & !going;
-        if any(cut) {
-            let u = model.sequence.single(l, self.id, Slot::Beyond, self.depth);
+        if cut.any() {
+            let u = model.sequence.single(l, self.paths.id, Slot::Beyond);
             let chosen = cut & u.lt(l.real(BEYOND_SHARE));
             self.go_beyond(l, chosen);
             going = going | chosen;
@@ -171,90 +124,53 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         going
     }
 
-    /// Writes down how the paths go on, those that live.
+    /// Number of segments traced, this one included.
     #[inline(always)]
-    fn keep(
-        &self,
-        l: L,
-        pool: &mut Pool<L::Scalar>,
-        meeting: &Meeting<'_, L>,
-        next: &Scattered<L>,
-        (to, alive): (usize, L::Mask),
-    ) {
-        let kept = self.flags & l.int(flags::TERMINATED | flags::BEYOND);
-        let flags = kept
-            | bit_where(l, next.inward, flags::INWARD)
-            | bit_where(l, next.specular, flags::SPECULAR);
-        for (field, v) in [
-            (RealField::Origin, meeting.surface.point),
-            (RealField::Direction, next.direction),
-        ] {
-            pool.keep_real(l, field, 0, to, (v.x, alive));
-            pool.keep_real(l, field, 1, to, (v.y, alive));
-            pool.keep_real(l, field, 2, to, (v.z, alive));
-        }
-        pool.keep_real(l, RealField::Pdf, 0, to, (next.pdf, alive));
-        for (field, x) in [
-            (IntField::Departure, meeting.surface.object),
-            (IntField::Flags, flags),
-            (IntField::Depth, self.depth.plus(l.int(1))),
-            (IntField::Key, self.id.key),
-            (IntField::Index, self.id.index),
-            (IntField::Slot, l.load_int(&self.slots)),
-            (IntField::Row, self.row),
-        ] {
-            pool.keep_int(l, field, to, (x, alive));
-        }
+    fn depth(&self, l: L) -> L::Int {
+        self.paths.id.bounce.plus(l.int(1))
     }
 
-    /// Lane 0 on arrival.
-    #[cold]
-    fn vertex(&self, l: L, arrival: &Arrival<'_, L>, surface: &Surfaces<L>) -> Vertex {
-        let set = |m: L::Mask| m.bits() & 1 == 1;
-        Vertex {
-            depth: l.int_lane(self.depth, 0),
-            origin: lane_vector(l, arrival.ray.origin, 0),
-            direction: lane_vector(l, arrival.ray.direction, 0),
-            distance: l.lane(arrival.nearest.t, 0).to_f64(),
-            object: some_object(l.int_lane(surface.object, 0)),
-            point: lane_vector(l, surface.point, 0),
-            normal: lane_vector(l, surface.normal, 0),
-            front: set(surface.front),
-            arrival_pdf: (!set(arrival.specular)).then(|| l.lane(arrival.pdf, 0).to_f64()),
-            emission_weight: set(surface.emits)
-                .then(|| l.lane(surface.emission_weight, 0).to_f64()),
-            throughput: self.spectrum(&self.carried().throughput),
-            light: None,
-            scattered: None,
-            radiance: Vec::new(),
+    /// Throughput and radiance of lane 0.
+    fn carried(&self) -> [Vec<f64>; 2] {
+        let Carried {
+            throughput,
+            radiance,
+        } = self.workspace.rows.paths[self.slots[0] as usize];
+        [throughput, radiance].map(|spectrum| spectrum.map(Scalar::to_f64).to_vec())
+    }
+
+    /// The vertex that is being written down, of lane 0.
+    #[inline(always)]
+    pub fn vertex(&mut self) -> Option<&mut Vertex> {
+        self.workspace.trace.as_mut()?.last_mut()
+    }
+
+    /// Writes down where lane 0 has come to.
+    #[inline(always)]
+    fn note_arrival(&mut self, l: L, arrival: &Arrival<'_, L>, surface: &Surfaces<L>) {
+        if self.workspace.trace.is_some() {
+            let mut vertex = arrival.vertex(l, surface);
+            vertex.depth = l.int_lane(self.paths.id.bounce, 0);
+            [vertex.throughput, _] = self.carried();
+            self.workspace.trace.get_or_insert_default().push(vertex);
         }
-    }
-
-    /// What lane 0 carries.
-    fn carried(&self) -> &Carried<L::Scalar, C> {
-        &self.rows.paths[self.slots[0] as usize]
-    }
-
-    fn spectrum(&self, row: &[L::Scalar; C]) -> Vec<f64> {
-        row.map(Scalar::to_f64).to_vec()
     }
 
     /// Writes down how lane 0 goes on.
     #[inline(always)]
     fn note_end(&mut self, l: L, next: &Scattered<L>, alive: L::Mask) {
-        if self.vertex.is_some() {
-            let goes_on = alive.bits() & 1 == 1;
+        if self.workspace.trace.is_none() {
+            return;
+        }
+        let [throughput, radiance] = self.carried();
+        if let Some(vertex) = self.vertex() {
             let specular = next.specular.bits() & 1 == 1;
-            let scattered = goes_on.then(|| ScatteredVertex {
+            vertex.scattered = (alive.bits() & 1 == 1).then(|| ScatteredVertex {
                 direction: lane_vector(l, next.direction, 0),
                 pdf: (!specular).then(|| l.lane(next.pdf, 0).to_f64()),
-                throughput: self.spectrum(&self.carried().throughput),
+                throughput,
             });
-            let radiance = self.spectrum(&self.carried().radiance);
-            if let Some(vertex) = &mut self.vertex {
-                vertex.scattered = scattered;
-                vertex.radiance = radiance;
-            }
+            vertex.radiance = radiance;
         }
     }
 
@@ -267,7 +183,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         }
         let (at, weights) = (self.table_rows(l, spectrum), array(l, weight));
         let table = self.model.spectra.rows::<C>();
-        let paths = self.rows.paths.as_mut_slice();
+        let paths = self.workspace.rows.paths.as_mut_slice();
         for i in each(bits) {
             // Copies: arrays that cannot overlap become vectors.
             let values = table[at[i % WIDEST] as usize];
@@ -287,13 +203,13 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     /// Numbers of the table rows that hold a spectrum at each lane's wavelengths.
     #[inline(always)]
     pub fn table_rows(&self, l: L, spectrum: L::Int) -> [u32; WIDEST] {
-        int_array(l, spectrum.plus(self.row))
+        int_array(l, spectrum.plus(self.paths.row))
     }
 
     /// A lane's largest throughput over the wavelengths.
     #[inline(always)]
     fn largest(&self, i: usize) -> L::Scalar {
-        let mut throughput = self.rows.paths[self.slots[i] as usize].throughput;
+        let mut throughput = self.workspace.rows.paths[self.slots[i] as usize].throughput;
         let mut width = C / 2;
         while width > 0 {
             for c in 0..width {
@@ -311,25 +227,25 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             let slot = self.slots[i] as usize;
             let own = slot + CHUNK;
             let weight = L::Scalar::from_f64(1.0 / BEYOND_SHARE);
-            let rows = &mut *self.rows;
+            let rows = &mut self.workspace.rows;
             rows.paths[own] = Carried {
                 throughput: rows.paths[slot].throughput.map(|value| value * weight),
-                ..Carried::new()
+                ..Carried::default()
             };
             rows.row[own] = rows.row[slot];
             rows.hero[own] = rows.hero[slot];
             rows.fraction[own] = rows.fraction[slot];
             self.slots[i] = own as u32;
-            self.beyond_slots.push(own as u32);
+            self.workspace.beyond_slots.push(own as u32);
         }
-        self.flags = self.flags | bit_where(l, chosen, flags::BEYOND);
+        self.paths.flags = self.paths.flags | bit_where(l, chosen, flags::BEYOND);
     }
 
     /// Ends paths with the probability that their throughput is lost anyway, and rewards the rest.
     #[inline(always)]
     fn roulette(&mut self, l: L, going: L::Mask) -> L::Mask {
-        let late = going & !self.depth.plus(l.int(1)).below(l.int(ROULETTE_FROM));
-        if !any(late) {
+        let late = going & !self.depth(l).below(l.int(ROULETTE_FROM));
+        if !late.any() {
             return going;
         }
         let mut largest = [L::Scalar::default(); WIDEST];
@@ -338,19 +254,17 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         }
         let largest = l.load(&largest);
         let one = l.real(1.0);
-        let terminated = has(l, self.flags, flags::TERMINATED);
+        let terminated = has(l, self.paths.flags, flags::TERMINATED);
         let carried = l.select(terminated, l.real(1.0 / C as f64), one);
-        let beyond = has(l, self.flags, flags::BEYOND);
+        let beyond = has(l, self.paths.flags, flags::BEYOND);
         let share = l.select(beyond, l.real(BEYOND_SHARE), one);
         let survival = (largest * carried * share).min(l.real(LARGEST_SURVIVAL));
-        let u = self
-            .model
-            .sequence
-            .single(l, self.id, Slot::Roulette, self.depth);
+        let sequence = &self.model.sequence;
+        let u = sequence.single(l, self.paths.id, Slot::Roulette);
         let survives = late & u.lt(survival);
         let rewards = array(l, one / survival);
         for i in each(survives.bits()) {
-            for value in &mut self.rows.paths[self.slots[i] as usize].throughput {
+            for value in &mut self.workspace.rows.paths[self.slots[i] as usize].throughput {
                 *value = *value * rewards[i];
             }
         }

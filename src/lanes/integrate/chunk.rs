@@ -2,21 +2,18 @@
 
 use std::ops::Range;
 
-use super::bounce::{Places, bounce};
+use super::bounce::bounce;
 use super::develop::Spectrometer;
 use super::intersect::{NOTHING, Rungs};
 use super::model::Model;
-use super::pool::{Carried, IntField, Pool, RealField, Rows, WIDEST, flags};
+use super::pool::{Carried, POOL, Paths, Pool, Rows, WIDEST, flags};
 use super::replay::Vertex;
 use crate::math::lanes::{Int, Lanes, Scalar};
 use crate::spectrum::grid::CELLS;
 
-/// Paths in flight: a multiple of every lane count, small enough to stay in the cache beside the
-/// results.
-pub const POOL: usize = 512;
 /// Most samples of a chunk.
 pub const CHUNK: usize = 4096;
-/// 0, 1, 2 …
+/// The number of each lane.
 const LANE_NUMBERS: [u32; WIDEST] = {
     let mut numbers = [0; WIDEST];
     let mut i = 0;
@@ -48,7 +45,6 @@ pub struct Requests {
 }
 
 impl Requests {
-    /// Forgets all.
     #[inline]
     pub fn clear(&mut self) {
         for column in [&mut self.x, &mut self.y, &mut self.sample] {
@@ -73,13 +69,11 @@ impl Requests {
         self.length = length;
     }
 
-    /// Their number.
     #[inline]
     pub fn len(&self) -> usize {
         self.length
     }
 
-    /// Whether there are none.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.length == 0
@@ -89,9 +83,9 @@ impl Requests {
 /// What `max_depth` cuts off, as sums over camera samples of their luminance beyond it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Beyond {
-    /// Σ Y.
+    /// Σ Y over the samples.
     pub sum: f64,
-    /// Σ Y².
+    /// Σ Y² over the samples.
     pub squares: f64,
 }
 
@@ -108,19 +102,18 @@ pub struct Workspace<T, const C: usize> {
     pub(super) values: [[T; C]; WIDEST],
     /// X, Y, Z by sample.
     pub tristimulus: Vec<[T; 3]>,
-    /// Which arithmetic decided.
+    /// Which arithmetic decided about rays.
     pub rungs: Rungs,
     /// What `max_depth` cut off.
     pub beyond: Beyond,
-    /// The vertices of a single request, to be written down.
+    /// The vertices of a single request, where they are to be written down.
     pub trace: Option<Vec<Vertex>>,
 }
 
-impl<T: Scalar, const C: usize> Workspace<T, C> {
-    /// Allocates the buffers.
-    pub fn new() -> Self {
+impl<T: Scalar, const C: usize> Default for Workspace<T, C> {
+    fn default() -> Self {
         Self {
-            pool: Pool::new(POOL),
+            pool: Pool::default(),
             rows: Rows::new(2 * CHUNK),
             beyond_slots: Vec::new(),
             values: [[T::default(); C]; WIDEST],
@@ -130,7 +123,9 @@ impl<T: Scalar, const C: usize> Workspace<T, C> {
             trace: None,
         }
     }
+}
 
+impl<T: Scalar, const C: usize> Workspace<T, C> {
     /// Turns the radiance of so many samples into tristimulus values.
     #[inline(always)]
     fn develop(&mut self, spectrometer: &Spectrometer<T>, samples: usize) {
@@ -145,12 +140,6 @@ impl<T: Scalar, const C: usize> Workspace<T, C> {
             self.beyond.sum += y;
             self.beyond.squares += y * y;
         }
-    }
-}
-
-impl<T: Scalar, const C: usize> Default for Workspace<T, C> {
-    fn default() -> Self {
-        Self::new()
     }
 }
 
@@ -180,8 +169,7 @@ pub fn render<L: Lanes, const C: usize>(
         let mut going_on = 0;
         for at in (0..workspace.pool.length).step_by(L::COUNT) {
             // Survivors never reach beyond the packet that is being worked on.
-            let places = Places { at, to: going_on };
-            going_on += bounce(l, model, workspace, places);
+            going_on += bounce(l, model, workspace, at, going_on);
         }
         workspace.pool.length = going_on;
     }
@@ -218,25 +206,18 @@ fn start<L: Lanes, const C: usize>(
         &mut rows.hero[first..],
     );
     l.store(position - l.to_real(cell), &mut rows.fraction[first..]);
-    rows.paths[range].fill(Carried::new());
+    rows.paths[range].fill(Carried::default());
 
-    let at = pool.length;
-    for (field, v) in [
-        (RealField::Origin, origin),
-        (RealField::Direction, direction),
-    ] {
-        pool.set_real(l, field, 0, at, v.x);
-        pool.set_real(l, field, 1, at, v.y);
-        pool.set_real(l, field, 2, at, v.z);
-    }
-    pool.set_real(l, RealField::Pdf, 0, at, l.real(0.0));
-    pool.set_int(l, IntField::Departure, at, l.int(NOTHING));
-    pool.set_int(l, IntField::Flags, at, l.int(flags::SPECULAR));
-    pool.set_int(l, IntField::Depth, at, l.int(0));
-    pool.set_int(l, IntField::Key, at, id.key);
-    pool.set_int(l, IntField::Index, at, id.index);
-    let slot = l.load_int(&LANE_NUMBERS).plus(l.int(first as u32));
-    pool.set_int(l, IntField::Slot, at, slot);
-    pool.set_int(l, IntField::Row, at, row);
+    let paths = Paths {
+        origin,
+        direction,
+        pdf: l.real(0.0),
+        leaving: l.int(NOTHING),
+        flags: l.int(flags::SPECULAR),
+        id,
+        slot: l.load_int(&LANE_NUMBERS).plus(l.int(first as u32)),
+        row,
+    };
+    pool.write(l, pool.length, &paths);
     pool.length += count;
 }

@@ -2,27 +2,29 @@
 //! that scattered rays find by themselves taken off.
 
 use super::bounce::{Step, some_object};
-use super::intersect::{Leaving, NOTHING, Shadow, lane_vector, occluded};
-use super::pool::{WIDEST, any, array, each};
+use super::intersect::{NOTHING, Rays, Shadow, lane_vector, occluded};
+use super::model::Model;
+use super::pool::{WIDEST, array, each};
 use super::replay::LightVertex;
 use super::scatter::{Meeting, Question};
+use super::surface::Distinct;
 use crate::light::Towards;
 use crate::material::{Material, Transport, each_material};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::lookup::SMALL;
 use crate::math::vec3::Vec3;
+use crate::planted::light_weight;
 use crate::sample::Slot;
 use crate::sample::mis::power_weight;
+use crate::sample::sequence::Identity;
 use crate::sample::warp::cosine_hemisphere_pdf;
 use crate::shape::lanes::LaneRay;
 
 /// What arrives from sampled lights.
 pub struct Lit<L: Lanes> {
-    /// Where it does.
+    /// Lanes in which some does.
     pub arrives: L::Mask,
-    /// wi: unit directions towards the lights.
-    pub direction: Vec3<L::Real>,
-    /// Spectrum of the light.
+    /// Where the light's spectrum stands in the bank.
     pub spectrum: L::Int,
     /// What its spectrum is multiplied with beside throughput and bsdf, or albedo where the material
     /// is Lambertian; 0 where it is hidden.
@@ -33,7 +35,7 @@ pub struct Lit<L: Lanes> {
 pub struct Sampled<L: Lanes> {
     /// How they are seen; the density contains the probability of the light.
     pub towards: Towards<L>,
-    /// Spectra of the lights.
+    /// Where the lights' spectra stand in the bank.
     pub spectrum: L::Int,
     pub object: L::Int,
     /// Scattered rays can hit them.
@@ -74,21 +76,19 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let light = self.sample_lights(l, meeting, m, numbers);
         let direction = light.towards.direction;
         let cosine = direction.dot(meeting.normal);
-        let mut weight = light.lambertian_weight(l, cosine);
-        #[cfg(feature = "planted")]
-        {
-            weight = crate::planted::light_weight(l, self.model.planted, weight, cosine);
-        }
+        let weight = light.lambertian_weight(l, cosine);
+        let mut weight = light_weight(l, self.model.planted, weight, cosine);
+        let kinds = self.model.needs.materials;
         let mut scatters = cosine.gt(zero);
         let mut across = l.mask(false);
-        each_material!(M, KIND => if M::SPREAD && !M::LAMBERTIAN && meeting.kinds.contains(KIND) {
+        each_material!(M, KIND => if M::SPREAD && !M::LAMBERTIAN && kinds.contains(KIND) {
             let own = m & meeting.of(l, KIND);
-            if any(own) {
+            if own.any() {
                 let Question { at, values, .. } = self.question::<M>(l, meeting, own);
                 let densities = M::evaluate(
                     l,
                     &at,
-                    [meeting.wo(), direction],
+                    [meeting.wo, direction],
                     Transport::Radiance,
                     #[inline(always)]
                     |i, value| values[i] = *value,
@@ -101,14 +101,21 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             }
         });
         let asked = m & light.towards.valid & scatters & weight.gt(zero);
-        let leaving = Leaving {
-            object: meeting.surface.object,
-            inward: meeting.inward(across),
-        };
-        let arrives = self.arrives(l, meeting.surface.point, &leaving, &light, (asked, weight));
+        let mut arrives = asked;
+        if asked.any() {
+            let shadow = Shadow {
+                rays: Rays {
+                    ray: LaneRay::new(l, meeting.surface.point, direction),
+                    leaving: meeting.surface.object,
+                    inward: meeting.inward(across),
+                },
+                limit: light.towards.distance,
+                except: light.object,
+            };
+            arrives = self.arrives(l, &shadow, asked, weight);
+        }
         Lit {
             arrives,
-            direction,
             spectrum: light.spectrum,
             weight: l.select(arrives, weight, zero),
         }
@@ -138,11 +145,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             extended: l.mask(true),
         };
         let left = self.sample_spheres(l, meeting, (chosen, m), numbers, &mut sampled);
-        let mut pending = left.bits();
-        while pending != 0 {
-            let k = l.int_lane(chosen, pending.trailing_zeros() as usize);
-            let here = m & chosen.same(l.int(k));
-            pending &= !here.bits();
+        for (k, here) in Distinct::new(l, chosen, left) {
             self.sample_light(l, meeting, (k, here), numbers, &mut sampled);
         }
         sampled
@@ -162,7 +165,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             return m;
         };
         let spheres = m & l.lookup_int(&table.is_sphere, chosen).same(l.int(1));
-        if !any(spheres) {
+        if !spheres.any() {
             return m;
         }
         let lights = table.spheres.at(l, chosen);
@@ -208,35 +211,16 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
 
     /// Where nothing stands between a surface and its light, of the lanes that ask.
     #[inline(always)]
-    fn arrives(
-        &mut self,
-        l: L,
-        point: Vec3<L::Real>,
-        leaving: &Leaving<L>,
-        light: &Sampled<L>,
-        (asked, weight): (L::Mask, L::Real),
-    ) -> L::Mask {
-        if !any(asked) {
-            return asked;
-        }
-        let Towards {
-            direction,
-            distance,
-            ..
-        } = light.towards;
-        let shadow = Shadow {
-            ray: LaneRay::new(l, point, direction),
-            limit: distance,
-            except: light.object,
-        };
-        let blocked = occluded(l, self.model, &shadow, leaving, asked, self.rungs);
-        if let Some(vertex) = &mut self.vertex
-            && asked.bits() & 1 == 1
+    fn arrives(&mut self, l: L, shadow: &Shadow<L>, asked: L::Mask, weight: L::Real) -> L::Mask {
+        let rungs = &mut self.workspace.rungs;
+        let blocked = occluded(l, self.model, shadow, asked, rungs);
+        if asked.bits() & 1 == 1
+            && let Some(vertex) = self.vertex()
         {
             vertex.light = Some(LightVertex {
-                object: some_object(l.int_lane(light.object, 0)),
-                direction: lane_vector(l, direction, 0),
-                distance: l.lane(distance, 0).to_f64(),
+                object: some_object(l.int_lane(shadow.except, 0)),
+                direction: lane_vector(l, shadow.rays.ray.direction, 0),
+                distance: l.lane(shadow.limit, 0).to_f64(),
                 weight: l.lane(weight, 0).to_f64(),
                 blocked: blocked.bits() & 1 == 1,
             });
@@ -257,7 +241,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             return (chosen, u);
         }
         if others.len() >= SMALL {
-            return (self.choose_among_many(l, m), u);
+            return (choose_among_many(l, self.model, self.paths.id, m), u);
         }
         let mut below = l.splat(first.below);
         let mut probability = l.splat(first.probability);
@@ -271,19 +255,23 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let stretched = ((u - below) / probability).min(l.real(largest));
         (chosen, stretched)
     }
+}
 
-    /// The number of each lane's light where a share of the numbers' digits would be too coarse for
-    /// its point, and looking at every light too slow.
-    #[inline(never)]
-    fn choose_among_many(&self, l: L, m: L::Mask) -> L::Int {
-        let sequence = &self.model.sequence;
-        let variates = array(l, sequence.single(l, self.id, Slot::Choice, self.depth));
-        let lights = &self.model.lights;
-        let mut chosen = [0; WIDEST];
-        for i in each(m.bits()) {
-            let later = lights.partition_point(|light| light.below <= variates[i % WIDEST]);
-            chosen[i % WIDEST] = later.saturating_sub(1) as u32;
-        }
-        l.load_int(&chosen)
+/// The number of each lane's light where a share of the numbers' digits would be too coarse for its
+/// point, and looking at every light too slow.
+#[inline(never)]
+fn choose_among_many<L: Lanes>(
+    l: L,
+    model: &Model<L::Scalar>,
+    id: Identity<L>,
+    m: L::Mask,
+) -> L::Int {
+    let variates = array(l, model.sequence.single(l, id, Slot::Choice));
+    let mut chosen = [0; WIDEST];
+    for i in each(m.bits()) {
+        let lights = &model.lights;
+        let later = lights.partition_point(|light| light.below <= variates[i % WIDEST]);
+        chosen[i % WIDEST] = later.saturating_sub(1) as u32;
     }
+    l.load_int(&chosen)
 }

@@ -1,4 +1,5 @@
-//! Rays against the scene: the list of shapes in lanes, and the ladder for what is left.
+//! Rays against the scene: objects in lanes first, then the certified ladder for what lanes leave
+//! undecided.
 
 use glam::DVec3;
 
@@ -9,10 +10,9 @@ use super::pool::each;
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::ray::Ray;
 use crate::math::vec3::Vec3;
-use crate::shape::implicit::placed::ImplicitTally;
 use crate::shape::lanes::implicit::{FieldQuestion, LaneImplicit, StartSign};
-use crate::shape::lanes::{Enclosure, LaneRay, Span};
-use crate::shape::resolve::{Departure, Doubt};
+use crate::shape::lanes::{Enclosure, LaneRay, LaneSpan};
+use crate::shape::resolve::{Departure, UndecidedRay};
 use crate::shape::{ShapeKind, Tally};
 
 /// Marks rays that hit or leave nothing.
@@ -21,18 +21,16 @@ pub const NOTHING: u32 = u32::MAX;
 /// How many rays each kind of arithmetic has decided.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Rungs {
-    /// Rays asked about.
     pub rays: u64,
     /// Rays that lanes left undecided.
     pub undecided: u64,
     /// Single questions that the ladder answered for those.
     pub ladder: Tally,
     /// Rays asked about implicit surfaces, each surface counted.
-    pub implicit: ImplicitTally,
+    pub implicit: Tally,
 }
 
 impl Rungs {
-    /// Both together.
     pub fn joined(self, other: Self) -> Self {
         Self {
             rays: self.rays + other.rays,
@@ -43,50 +41,14 @@ impl Rungs {
     }
 }
 
-/// Where rays start.
+/// A packet of rays and where they start.
 #[derive(Clone, Copy)]
-pub struct Leaving<L: Lanes> {
-    /// The object they leave.
-    pub object: L::Int,
-    /// Whether they go into it.
+pub struct Rays<L: Lanes> {
+    pub ray: LaneRay<L>,
+    /// The object that each leaves; [`NOTHING`] for those that start in the open.
+    pub leaving: L::Int,
+    /// Whether it goes into that object.
     pub inward: L::Mask,
-}
-
-impl<L: Lanes> Leaving<L> {
-    /// What the rays know of an implicit surface at their start.
-    #[inline(always)]
-    pub(super) fn start_sign(&self, l: L, object: u32) -> StartSign<L> {
-        StartSign {
-            on: self.object.same(l.int(object)),
-            inward: self.inward,
-        }
-    }
-}
-
-/// Rays and where they start.
-#[derive(Clone, Copy)]
-pub(super) struct Rays<'a, L: Lanes> {
-    pub ray: &'a LaneRay<L>,
-    /// What they leave.
-    pub leaving: &'a Leaving<L>,
-}
-
-impl<L: Lanes> Rays<'_, L> {
-    /// Lane `i`, as the ladder is asked about it.
-    #[inline(always)]
-    fn doubt<'c>(&self, l: L, i: usize, candidates: Option<&'c [u32]>) -> Doubt<'c> {
-        Doubt {
-            candidates,
-            ray: Ray {
-                origin: lane_vector(l, self.ray.origin, i),
-                direction: lane_vector(l, self.ray.direction, i),
-            },
-            departure: Departure {
-                object: l.int_lane(self.leaving.object, i),
-                inward: self.leaving.inward.bits() >> i & 1 == 1,
-            },
-        }
-    }
 }
 
 /// The closest hits of a packet.
@@ -97,6 +59,17 @@ pub struct Nearest<L: Lanes> {
     pub part: L::Int,
 }
 
+/// Rays towards lights.
+#[derive(Clone, Copy)]
+pub struct Shadow<L: Lanes> {
+    /// From surfaces.
+    pub rays: Rays<L>,
+    /// Distances of the lights.
+    pub limit: L::Real,
+    /// The objects of the lights themselves, which do not hide their own points.
+    pub except: L::Int,
+}
+
 /// One object's answer for rays that start anywhere.
 pub(super) struct Candidate<L: Lanes> {
     /// Where the crossing is; the lower end also of one that is not certain.
@@ -105,7 +78,7 @@ pub(super) struct Candidate<L: Lanes> {
     pub certain: L::Mask,
     /// There may be one.
     pub possible: L::Mask,
-    /// Which of the shape's parts it is on.
+    /// Which part it is on: among those of the scene, or of the shape as [`Asked::candidate`] says it.
     pub part: L::Int,
 }
 
@@ -115,23 +88,17 @@ pub(super) struct Asked<L: Lanes> {
     /// All of them: rays that leave a convex surface outward do not meet it again.
     pub all: L::Mask,
     /// Those that go inward from this object's own surface.
-    pub inside: L::Mask,
+    inside: L::Mask,
 }
 
 impl<L: Lanes> Asked<L> {
     #[inline(always)]
-    pub fn new(
-        l: L,
-        objects: L::Int,
-        kind: ShapeKind,
-        leaving: &Leaving<L>,
-        asked: L::Mask,
-    ) -> Self {
-        let own = asked & leaving.object.same(objects);
+    pub fn new(l: L, objects: L::Int, kind: ShapeKind, rays: &Rays<L>, asked: L::Mask) -> Self {
+        let own = asked & rays.leaving.same(objects);
         let inside = if kind.is_flat() {
             l.mask(false)
         } else {
-            own & leaving.inward
+            own & rays.inward
         };
         let all = if kind.is_convex() {
             (asked & !own) | inside
@@ -144,38 +111,34 @@ impl<L: Lanes> Asked<L> {
     /// Those that the span does not rule out. A line along the wall of the shape that it goes into
     /// may pass outside of it, by the rounding of its start; the ray meets it all the same.
     #[inline(always)]
-    pub fn met(&self, span: &Span<L>) -> L::Mask {
+    pub fn met(&self, span: &LaneSpan<L>) -> L::Mask {
         (self.all & !span.miss) | self.inside
     }
-}
 
-/// Picks the crossing that counts: the first one ahead, or the exit for rays that go inward from
-/// this object's own surface.
-#[inline(always)]
-pub(super) fn candidate<L: Lanes>(l: L, span: &Span<L>, asked: &Asked<L>) -> Candidate<L> {
-    let zero = l.real(0.0);
-    let Span {
-        mut near, far, hit, ..
-    } = *span;
-    if asked.inside.any() {
-        // The entering crossing is the start.
-        let behind = l.real(f64::NEG_INFINITY);
-        near.low = l.select(asked.inside, behind, near.low);
-        near.high = l.select(asked.inside, behind, near.high);
-    }
-    let leaves = near.high.lt(zero);
-    let low = l.select(leaves, far.low, near.low);
-    let high = l.select(leaves, far.high, near.high);
-    let possible = (asked.all & !(span.miss | high.lt(zero))) | asked.inside;
-    Candidate {
-        at: Enclosure {
-            // The larger of NaN and 0 is 0: what is not known could be anywhere.
-            low: low.max(zero),
-            high,
-        },
-        certain: hit & possible & low.gt(zero),
-        possible,
-        part: l.select_int(leaves, span.parts[1], span.parts[0]),
+    /// Picks the crossing that counts: the first one ahead, or the exit for rays that go inward from
+    /// this object's own surface.
+    #[inline(always)]
+    pub fn candidate(&self, l: L, span: &LaneSpan<L>) -> Candidate<L> {
+        let zero = l.real(0.0);
+        let (mut near, far) = (span.near, span.far);
+        if self.inside.any() {
+            // The entering crossing is the start.
+            near = near.replaced(l, self.inside, l.real(f64::NEG_INFINITY));
+        }
+        let leaves = near.high.lt(zero);
+        let low = l.select(leaves, far.low, near.low);
+        let high = l.select(leaves, far.high, near.high);
+        let possible = (self.all & !(span.miss | high.lt(zero))) | self.inside;
+        Candidate {
+            at: Enclosure {
+                // The larger of NaN and 0 is 0: what is not known could be anywhere.
+                low: low.max(zero),
+                high,
+            },
+            certain: span.hit & possible & low.gt(zero),
+            possible,
+            part: l.select_int(leaves, span.parts[1], span.parts[0]),
+        }
     }
 }
 
@@ -189,134 +152,185 @@ pub fn lane_vector<L: Lanes>(l: L, v: Vec3<L::Real>, i: usize) -> DVec3 {
     )
 }
 
-/// The closest hits on implicit surfaces, whose finders answer with a distance or not at all.
-#[derive(Clone, Copy)]
-pub(super) struct FieldHits<L: Lanes> {
-    /// Distance; a limit where nothing is hit before it.
-    pub t: L::Real,
-    /// Part; [`NOTHING`] at first.
-    pub part: L::Int,
-    /// What decided.
-    pub tally: ImplicitTally,
+/// Rays that are asked what they meet in a scene.
+pub(super) struct Query<'a, L: Lanes> {
+    pub l: L,
+    pub model: &'a Model<L::Scalar>,
+    pub rays: &'a Rays<L>,
+    /// The lanes that hold rays.
+    pub active: L::Mask,
 }
 
-impl<L: Lanes> FieldHits<L> {
-    /// Asks an implicit surface, for the lanes in `asked`.
+impl<L: Lanes> Query<'_, L> {
+    /// Where the lanes in `asked` cross object `k` before `limit`, which is no implicit surface; by a
+    /// call where there is a `CALL`. `None` where none of them does.
     #[inline(always)]
-    pub fn ask(
-        &mut self,
-        l: L,
-        model: &Model<L::Scalar>,
-        (object, implicit): (u32, &LaneImplicit<L::Scalar>),
-        rays: Rays<'_, L>,
-        active: L::Mask,
-    ) {
-        let question = FieldQuestion {
-            ray: rays.ray,
-            start: rays.leaving.start_sign(l, object),
-            limit: self.t,
-            active,
-        };
-        let (t, found) = implicit.first_hit(l, &question, &mut self.tally);
-        self.t = l.select(found, t, self.t);
-        let part = l.int(model.parts.first[object as usize]);
-        self.part = l.select_int(found, part, self.part);
-    }
-}
-
-/// The closest certain hits so far, and the earliest crossing that could be before them.
-pub(super) struct Search<L: Lanes> {
-    /// Where the closest certain hit is; infinite at first.
-    pub best: Enclosure<L>,
-    /// Its part; [`NOTHING`] at first.
-    pub part: L::Int,
-    /// Where the earliest of all other possible crossings could be.
-    pub rival: L::Real,
-    /// Hits on implicit surfaces that were asked on the way.
-    pub fields: FieldHits<L>,
-}
-
-impl<L: Lanes> Search<L> {
-    #[inline(always)]
-    pub fn new(l: L) -> Self {
-        let infinite = l.real(f64::INFINITY);
-        Self {
-            best: Enclosure {
-                low: infinite,
-                high: infinite,
-            },
-            part: l.int(NOTHING),
-            rival: infinite,
-            fields: FieldHits {
-                t: infinite,
-                part: l.int(NOTHING),
-                tally: ImplicitTally::default(),
-            },
-        }
-    }
-
-    /// Where whatever comes later cannot count any more.
-    #[inline(always)]
-    pub fn limit(&self) -> L::Real {
-        self.fields.t.min(self.best.high)
-    }
-
-    /// Asks one object, for the lanes in `asked`; by a call where it is `SINGLE`.
-    #[inline(always)]
-    pub fn ask<const SINGLE: bool>(
-        &mut self,
-        l: L,
-        model: &Model<L::Scalar>,
+    pub fn cross<const CALL: bool>(
+        &self,
         k: u32,
-        rays: Rays<'_, L>,
         asked: L::Mask,
-    ) {
-        let shape = &model.shapes[k as usize];
-        let Some(kind) = shape.kind else { return };
-        let asked = Asked::new(l, l.int(k), kind, rays.leaving, asked);
-        let (ray, limit) = (rays.ray, self.best.high);
-        let span = if SINGLE {
+        limit: L::Real,
+    ) -> Option<Candidate<L>> {
+        let (l, ray) = (self.l, &self.rays.ray);
+        let shape = &self.model.shapes[k as usize];
+        let asked = Asked::new(l, l.int(k), shape.kind?, self.rays, asked);
+        let span = if CALL {
             shape.span_by_call(l, ray, asked.all, limit)
         } else {
             shape.span(l, ray, asked.all, limit)
         };
         if !asked.met(&span).any() {
-            return;
+            return None;
         }
-        let c = candidate(l, &span, &asked);
-        let part = c.part.plus(l.int(model.parts.first[k as usize]));
-        self.take(l, &c, part);
+        let candidate = asked.candidate(l, &span);
+        let first = l.int(self.model.parts.first[k as usize]);
+        Some(Candidate {
+            part: candidate.part.plus(first),
+            ..candidate
+        })
     }
 
-    /// Takes a crossing with the given part into account.
-    #[inline(always)]
-    pub fn take(&mut self, l: L, c: &Candidate<L>, part: L::Int) {
-        let take = c.certain & c.at.high.lt(self.best.high);
-        // Of this crossing and the best so far, the one that is not taken remains a rival.
-        let loser = l.select(take, self.best.low, c.at.low);
-        self.rival = l.select(c.possible, loser.min(self.rival), self.rival);
-        self.best.low = l.select(take, c.at.low, self.best.low);
-        self.best.high = l.select(take, c.at.high, self.best.high);
-        self.part = l.select_int(take, part, self.part);
-    }
-
-    /// The same of any object, as one copy of code, for the hierarchy.
+    /// The same as one copy of code, for the hierarchy.
     #[inline(never)]
-    pub fn ask_alone(
-        &mut self,
-        l: L,
-        model: &Model<L::Scalar>,
-        k: u32,
-        rays: Rays<'_, L>,
-        asked: L::Mask,
-    ) {
-        l.vectorize(
-            #[inline(always)]
-            || match model.implicit(k) {
-                Some(implicit) => self.fields.ask(l, model, (k, implicit), rays, asked),
-                None => self.ask::<true>(l, model, k, rays, asked),
+    pub fn cross_alone(&self, k: u32, asked: L::Mask, limit: L::Real) -> Option<Candidate<L>> {
+        let l = self.l;
+        l.vectorize(inlined!(|| self.cross::<true>(k, asked, limit)))
+    }
+
+    /// Where the lanes in `active` hit an implicit surface before `limit`, and which of them do.
+    #[inline(always)]
+    pub fn hit_field(
+        &self,
+        (object, implicit): (u32, &LaneImplicit<L::Scalar>),
+        active: L::Mask,
+        limit: L::Real,
+        tally: &mut Tally,
+    ) -> (L::Real, L::Mask) {
+        let (l, rays) = (self.l, self.rays);
+        let question = FieldQuestion {
+            ray: &rays.ray,
+            start: StartSign {
+                on: rays.leaving.same(l.int(object)),
+                inward: rays.inward,
             },
-        );
+            limit,
+            active,
+        };
+        implicit.first_hit(l, &question, tally)
+    }
+
+    /// Calls `decide` with each lane of `unsure` and what the ladder has to decide about it: the objects
+    /// that its ray may meet before `limit`.
+    #[inline(always)]
+    fn resolve(
+        &self,
+        unsure: L::Mask,
+        limit: L::Real,
+        rungs: &mut Rungs,
+        mut decide: impl FnMut(usize, &UndecidedRay<'_>, &mut Tally),
+    ) {
+        let (l, rays) = (self.l, self.rays);
+        rungs.rays += u64::from(self.active.bits().count_ones());
+        rungs.undecided += u64::from(unsure.bits().count_ones());
+        for i in each(unsure.bits()) {
+            let candidates = candidates(self, i, l.lane(limit, i));
+            let doubt = UndecidedRay {
+                candidates: candidates.as_deref(),
+                ray: Ray {
+                    origin: lane_vector(l, rays.ray.origin, i),
+                    direction: lane_vector(l, rays.ray.direction, i),
+                },
+                departure: Departure {
+                    object: l.int_lane(rays.leaving, i),
+                    inward: rays.inward.bits() >> i & 1 == 1,
+                },
+            };
+            decide(i, &doubt, &mut rungs.ladder);
+        }
+    }
+}
+
+/// The closest certain hit so far, and the earliest crossing that could be before it: of each ray of
+/// a packet, or of one ray, as reals R and integers I.
+#[derive(Clone, Copy)]
+pub(super) struct Search<R, I> {
+    /// Where the closest certain hit is; infinite at first.
+    pub low: R,
+    pub high: R,
+    /// Its part; [`NOTHING`] at first.
+    pub part: I,
+    /// Where the earliest of all other possible crossings could be.
+    pub rival: R,
+    /// Distance of the closest hit on an implicit surface, whose finders answer with a distance or not
+    /// at all; infinite at first.
+    pub field_t: R,
+    /// Its part; [`NOTHING`] at first.
+    pub field_part: I,
+}
+
+/// The search of each ray of a packet.
+pub(super) type Searches<L> = Search<<L as Lanes>::Real, <L as Lanes>::Int>;
+
+/// The search for the closest hits.
+impl<L: Lanes> Query<'_, L> {
+    #[inline(always)]
+    pub fn nothing_yet(&self) -> Searches<L> {
+        let l = self.l;
+        let (infinite, nothing) = (l.real(f64::INFINITY), l.int(NOTHING));
+        Search {
+            low: infinite,
+            high: infinite,
+            part: nothing,
+            rival: infinite,
+            field_t: infinite,
+            field_part: nothing,
+        }
+    }
+
+    /// Asks one object, but no implicit surface.
+    #[inline(always)]
+    pub fn ask(&self, search: &mut Searches<L>, k: u32) {
+        if let Some(candidate) = self.cross::<false>(k, self.active, search.high) {
+            self.take(search, &candidate);
+        }
+    }
+
+    /// Asks any object, by calls.
+    #[inline(always)]
+    pub fn ask_any(&self, search: &mut Searches<L>, k: u32, tally: &mut Tally) {
+        if let Some(implicit) = self.model.implicit(k) {
+            self.ask_field(search, (k, implicit), tally);
+        } else if let Some(candidate) = self.cross_alone(k, self.active, search.high) {
+            self.take(search, &candidate);
+        }
+    }
+
+    /// Asks an implicit surface for hits before `field_t`.
+    #[inline(always)]
+    pub fn ask_field(
+        &self,
+        search: &mut Searches<L>,
+        field: (u32, &LaneImplicit<L::Scalar>),
+        tally: &mut Tally,
+    ) {
+        let l = self.l;
+        let (t, found) = self.hit_field(field, self.active, search.field_t, tally);
+        search.field_t = l.select(found, t, search.field_t);
+        let part = l.int(self.model.parts.first[field.0 as usize]);
+        search.field_part = l.select_int(found, part, search.field_part);
+    }
+
+    /// Takes a crossing into account.
+    #[inline(always)]
+    pub fn take(&self, search: &mut Searches<L>, c: &Candidate<L>) {
+        let l = self.l;
+        let take = c.certain & c.at.high.lt(search.high);
+        // Of this crossing and the best so far, the one that is not taken remains a rival.
+        let loser = l.select(take, search.low, c.at.low);
+        search.rival = l.select(c.possible, loser.min(search.rival), search.rival);
+        search.low = l.select(take, c.at.low, search.low);
+        search.high = l.select(take, c.at.high, search.high);
+        search.part = l.select_int(take, c.part, search.part);
     }
 }
 
@@ -325,153 +339,120 @@ impl<L: Lanes> Search<L> {
 pub fn nearest<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
-    ray: &LaneRay<L>,
-    leaving: &Leaving<L>,
+    rays: &Rays<L>,
     active: L::Mask,
     rungs: &mut Rungs,
 ) -> Nearest<L> {
-    l.vectorize(
-        #[inline(always)]
-        || {
-            let rays = Rays { ray, leaving };
-            let search = match &model.hierarchy {
-                None => list::search(l, model, &model.list, rays, active),
-                Some(many) => many::search(l, model, many, rays, active),
-            };
-            let high = search.best.high;
-            let mut best = Nearest {
-                t: (search.best.low + high) * l.real(0.5),
-                part: search.part,
-            };
-            rungs.rays += u64::from(active.bits().count_ones());
-            let unsure = active & search.rival.le(high) & search.rival.lt(l.real(f64::INFINITY));
-            rungs.undecided += u64::from(unsure.bits().count_ones());
-            for i in each(unsure.bits()) {
-                let candidates = candidates(l, model, rays, i, l.lane(high, i));
-                let doubt = rays.doubt(l, i, candidates.as_deref());
-                let found = model.resolver.nearest(&doubt, &mut rungs.ladder);
+    l.vectorize(inlined!(|| {
+        let query = Query {
+            l,
+            model,
+            rays,
+            active,
+        };
+        let mut search = match &model.hierarchy {
+            None => list::search(&query),
+            Some(many) => many::search(&query, many, &mut rungs.implicit),
+        };
+        let high = search.high;
+        let mut best: Nearest<L> = Nearest {
+            t: (search.low + high) * l.real(0.5),
+            part: search.part,
+        };
+        let unsure = active & search.rival.le(high) & search.rival.lt(l.real(f64::INFINITY));
+        query.resolve(
+            unsure,
+            high,
+            rungs,
+            #[inline(always)]
+            |i, doubt, tally| {
+                let found = model.resolver.nearest(doubt, tally);
                 let (t, part) = found.map_or((f64::INFINITY, NOTHING), |found| {
-                    (
-                        found.t,
-                        model.parts.first[found.object as usize] + found.part,
-                    )
+                    let first = model.parts.first[found.object as usize];
+                    (found.t, first + found.part)
                 });
                 best.t = l.with_lane(best.t, i, L::Scalar::from_f64(t));
                 best.part = l.with_int_lane(best.part, i, part);
+            },
+        );
+        if model.hierarchy.is_none() {
+            (search.field_t, search.field_part) = (best.t, best.part);
+            for (object, implicit) in &model.implicits {
+                query.ask_field(&mut search, (*object, implicit), &mut rungs.implicit);
             }
-            let mut fields = search.fields;
-            if model.hierarchy.is_none() {
-                (fields.t, fields.part) = (best.t, best.part);
-                for (object, implicit) in &model.implicits {
-                    fields.ask(l, model, (*object, implicit), rays, active);
-                }
-            }
-            let closer = fields.t.lt(best.t);
-            best.t = l.select(closer, fields.t, best.t);
-            best.part = l.select_int(closer, fields.part, best.part);
-            rungs.implicit = rungs.implicit.joined(fields.tally);
-            best
-        },
-    )
+        }
+        let closer = search.field_t.lt(best.t);
+        Nearest {
+            t: l.select(closer, search.field_t, best.t),
+            part: l.select_int(closer, search.field_part, best.part),
+        }
+    }))
 }
 
-/// Rays towards lights.
-#[derive(Clone, Copy)]
-pub struct Shadow<L: Lanes> {
-    /// From the surface.
-    pub ray: LaneRay<L>,
-    /// Distance of the light.
+/// Which shadow rays are surely blocked before they end, and which may be.
+pub(super) struct Blocks<L: Lanes> {
     pub limit: L::Real,
-    /// The light itself, which does not hide its own point.
     pub except: L::Int,
-}
-
-/// Which shadow rays are surely blocked, and which may be, before they end.
-pub(super) struct Blocks<'a, L: Lanes> {
-    pub shadow: &'a Shadow<L>,
-    pub rays: Rays<'a, L>,
     pub blocked: L::Mask,
     pub doubtful: L::Mask,
-    /// What decided about the implicit surfaces that were asked on the way.
-    pub tally: ImplicitTally,
 }
 
-impl<'a, L: Lanes> Blocks<'a, L> {
+impl<L: Lanes> Blocks<L> {
+    /// Of rays that end at `limit`, at the object `except`.
     #[inline(always)]
-    pub fn new(l: L, shadow: &'a Shadow<L>, leaving: &'a Leaving<L>) -> Self {
-        let ray = &shadow.ray;
+    pub fn new(l: L, limit: L::Real, except: L::Int) -> Self {
         Self {
-            shadow,
-            rays: Rays { ray, leaving },
+            limit,
+            except,
             blocked: l.mask(false),
             doubtful: l.mask(false),
-            tally: ImplicitTally::default(),
         }
     }
 
-    /// Asks one object, for the lanes in `asked`; by a call where it is `SINGLE`.
+    /// Those of the lanes in `asked` that do not end at their object.
     #[inline(always)]
-    pub fn ask<const SINGLE: bool>(
-        &mut self,
-        l: L,
-        model: &Model<L::Scalar>,
-        k: u32,
-        asked: L::Mask,
-    ) {
-        let Shadow { ray, limit, except } = self.shadow;
-        let shape = &model.shapes[k as usize];
-        let Some(kind) = shape.kind else { return };
-        let asked = asked & !except.same(l.int(k));
-        let asked = Asked::new(l, l.int(k), kind, self.rays.leaving, asked);
-        let span = if SINGLE {
-            shape.span_by_call(l, ray, asked.all, *limit)
-        } else {
-            shape.span(l, ray, asked.all, *limit)
-        };
-        if !asked.met(&span).any() {
-            return;
+    fn counted(&self, asked: L::Mask, objects: L::Int) -> L::Mask {
+        asked & !self.except.same(objects)
+    }
+
+    /// Asks one object, but no implicit surface.
+    #[inline(always)]
+    pub fn ask(&mut self, query: &Query<'_, L>, k: u32) {
+        let asked = self.counted(query.active, query.l.int(k));
+        if let Some(candidate) = query.cross::<false>(k, asked, self.limit) {
+            self.take(&candidate);
         }
-        self.take(&candidate(l, &span, &asked));
+    }
+
+    /// Asks any object, by calls.
+    #[inline(always)]
+    pub fn ask_any(&mut self, query: &Query<'_, L>, k: u32, tally: &mut Tally) {
+        let asked = self.counted(query.active, query.l.int(k));
+        if let Some(implicit) = query.model.implicit(k) {
+            self.ask_field(query, (k, implicit), tally);
+        } else if let Some(candidate) = query.cross_alone(k, asked, self.limit) {
+            self.take(&candidate);
+        }
+    }
+
+    /// Asks an implicit surface.
+    #[inline(always)]
+    pub fn ask_field(
+        &mut self,
+        query: &Query<'_, L>,
+        field: (u32, &LaneImplicit<L::Scalar>),
+        tally: &mut Tally,
+    ) {
+        let asked = self.counted(query.active & !self.blocked, query.l.int(field.0));
+        let (_, found) = query.hit_field(field, asked, self.limit, tally);
+        self.blocked = self.blocked | (found & asked);
     }
 
     /// Takes a crossing into account.
     #[inline(always)]
     pub fn take(&mut self, c: &Candidate<L>) {
-        let limit = self.shadow.limit;
-        self.blocked = self.blocked | (c.certain & c.at.high.lt(limit));
-        self.doubtful = self.doubtful | (c.possible & c.at.low.lt(limit));
-    }
-
-    /// Asks an implicit surface, for the lanes in `asked` that are not blocked.
-    #[inline(always)]
-    fn ask_field(
-        &mut self,
-        l: L,
-        (object, implicit): (u32, &LaneImplicit<L::Scalar>),
-        asked: L::Mask,
-    ) {
-        let Shadow { ray, limit, except } = self.shadow;
-        let active = asked & !self.blocked & !except.same(l.int(object));
-        let question = FieldQuestion {
-            ray,
-            start: self.rays.leaving.start_sign(l, object),
-            limit: *limit,
-            active,
-        };
-        let (_, found) = implicit.first_hit(l, &question, &mut self.tally);
-        self.blocked = self.blocked | (found & active);
-    }
-
-    /// Asks any object, as one copy of code, for the hierarchy.
-    #[inline(never)]
-    pub fn ask_alone(&mut self, l: L, model: &Model<L::Scalar>, k: u32, asked: L::Mask) {
-        l.vectorize(
-            #[inline(always)]
-            || match model.implicit(k) {
-                Some(implicit) => self.ask_field(l, (k, implicit), asked),
-                None => self.ask::<true>(l, model, k, asked),
-            },
-        );
+        self.blocked = self.blocked | (c.certain & c.at.high.lt(self.limit));
+        self.doubtful = self.doubtful | (c.possible & c.at.low.lt(self.limit));
     }
 }
 
@@ -484,41 +465,47 @@ pub fn occluded<L: Lanes>(
     l: L,
     model: &Model<L::Scalar>,
     shadow: &Shadow<L>,
-    leaving: &Leaving<L>,
     active: L::Mask,
     rungs: &mut Rungs,
 ) -> L::Mask {
-    l.vectorize(
-        #[inline(always)]
-        || {
-            let mut blocks = Blocks::new(l, shadow, leaving);
-            match &model.hierarchy {
-                None => list::blocks(l, model, &model.occluders, &mut blocks, active),
-                Some(many) => many::blocks(l, model, many, &mut blocks, active),
-            }
-            let rays = blocks.rays;
-            rungs.rays += u64::from(active.bits().count_ones());
-            let unsure = active & blocks.doubtful & !blocks.blocked;
-            rungs.undecided += u64::from(unsure.bits().count_ones());
-            let mut answers = 0;
-            for i in each(unsure.bits()) {
+    l.vectorize(inlined!(|| {
+        let Shadow {
+            rays,
+            limit,
+            except,
+        } = shadow;
+        let query = Query {
+            l,
+            model,
+            rays,
+            active,
+        };
+        let mut blocks = Blocks::new(l, *limit, *except);
+        match &model.hierarchy {
+            None => list::blocks(&query, *except, &mut blocks),
+            Some(many) => many::blocks(&query, many, &mut blocks, &mut rungs.implicit),
+        }
+        let unsure = active & blocks.doubtful & !blocks.blocked;
+        let mut answers = 0;
+        query.resolve(
+            unsure,
+            *limit,
+            rungs,
+            #[inline(always)]
+            |i, doubt, tally| {
                 // The limit is a rounded distance: a few units in its last place are its own noise.
-                let end = l.lane(shadow.limit, i).to_f64() * (1.0 - 8.0 * L::Scalar::ROUNDOFF);
-                let limit = l.lane(shadow.limit, i);
-                let candidates = candidates(l, model, rays, i, limit);
-                let doubt = rays.doubt(l, i, candidates.as_deref());
-                let (except, tally) = (l.int_lane(shadow.except, i), &mut rungs.ladder);
-                let hidden = model.resolver.occluded(&doubt, end, except, tally);
+                let end = l.lane(*limit, i).to_f64() * (1.0 - 8.0 * L::Scalar::ROUNDOFF);
+                let except = l.int_lane(*except, i);
+                let hidden = model.resolver.occluded(doubt, end, except, tally);
                 answers |= u32::from(hidden) << i;
+            },
+        );
+        blocks.blocked = blocks.blocked | l.mask_from_bits(answers);
+        if model.hierarchy.is_none() {
+            for (object, implicit) in model.implicits.iter().filter(|(k, _)| model.hides(*k)) {
+                blocks.ask_field(&query, (*object, implicit), &mut rungs.implicit);
             }
-            blocks.blocked = blocks.blocked | l.mask_from_bits(answers);
-            if model.hierarchy.is_none() {
-                for (object, implicit) in model.implicits.iter().filter(|(k, _)| model.hides(*k)) {
-                    blocks.ask_field(l, (*object, implicit), active);
-                }
-            }
-            rungs.implicit = rungs.implicit.joined(blocks.tally);
-            blocks.blocked
-        },
-    )
+        }
+        blocks.blocked
+    }))
 }

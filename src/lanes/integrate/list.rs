@@ -1,8 +1,7 @@
 //! A few objects, asked by whole packets one after the other; of balls each ray asks those that it
 //! comes near.
 
-use super::intersect::{Asked, Blocks, Leaving, NOTHING, Rays, Search, candidate};
-use super::model::Model;
+use super::intersect::{Asked, Blocks, Candidate, NOTHING, Query, Searches};
 use crate::math::lanes::{Int, Lanes, Mask, Scalar};
 use crate::math::lookup::SMALL;
 use crate::shape::ShapeKind;
@@ -15,15 +14,14 @@ const SEVERAL: usize = 3;
 /// The objects of a list, by how they are asked.
 #[derive(Debug, Clone)]
 pub struct List<T> {
-    /// All, in order.
+    /// All their numbers, in order.
     pub objects: Vec<u32>,
-    /// Those that are asked alone.
+    /// The objects that packets ask one after the other.
     alone: Vec<u32>,
-    /// Balls that are asked together.
     groups: Vec<Group<T>>,
 }
 
-/// Balls that are asked together.
+/// Balls of which each ray asks those that it comes near.
 #[derive(Debug, Clone)]
 struct Group<T> {
     balls: Balls<T>,
@@ -56,69 +54,68 @@ impl<T: Scalar> List<T> {
     }
 }
 
-/// The closest hits of the active rays among the objects of a list.
+/// The closest hits of the active rays among the objects of the scene's list.
 #[inline(always)]
-pub(super) fn search<L: Lanes>(
-    l: L,
-    model: &Model<L::Scalar>,
-    list: &List<L::Scalar>,
-    rays: Rays<'_, L>,
-    active: L::Mask,
-) -> Search<L> {
-    let Rays { ray, leaving } = rays;
-    let mut search = Search::new(l);
+pub(super) fn search<L: Lanes>(query: &Query<'_, L>) -> Searches<L> {
+    let (l, ray, list) = (query.l, &query.rays.ray, &query.model.list);
+    let mut search = query.nothing_yet();
     for &k in &list.alone {
-        search.ask::<false>(l, model, k, rays, active);
+        query.ask(&mut search, k);
     }
-    for Group { balls, parts } in &list.groups {
-        let mut places = balls.near(l, ray, [outward(l, leaving)], search.best.high);
-        loop {
-            let asked = active & !places.same(l.int(0));
-            if !asked.any() {
-                break;
-            }
-            let place = Balls::<L::Scalar>::take_place(l, &mut places);
-            let objects = l.lookup_int(&balls.objects, place);
-            let asked = Asked::new(l, objects, ShapeKind::Sphere, leaving, asked);
-            let found = candidate(l, &balls.span_of(l, place, ray), &asked);
-            search.take(l, &found, l.lookup_int(parts, place));
+    for group in &list.groups {
+        let mut places = group.balls.near(l, ray, [outward(query)], search.high);
+        while let Some(found) = group.next(query, query.active, &mut places) {
+            query.take(&mut search, &found);
         }
     }
     search
 }
 
-/// Adds which of the active shadow rays objects of a list block.
+/// Adds which of the active shadow rays the scene's occluders block.
 #[inline(always)]
-pub(super) fn blocks<L: Lanes>(
-    l: L,
-    model: &Model<L::Scalar>,
-    list: &List<L::Scalar>,
-    blocks: &mut Blocks<'_, L>,
-    active: L::Mask,
-) {
-    let (shadow, leaving) = (blocks.shadow, blocks.rays.leaving);
+pub(super) fn blocks<L: Lanes>(query: &Query<'_, L>, except: L::Int, blocks: &mut Blocks<L>) {
+    let (l, ray, list) = (query.l, &query.rays.ray, &query.model.occluders);
     for &k in &list.alone {
-        blocks.ask::<false>(l, model, k, active);
+        blocks.ask(query, k);
     }
-    for Group { balls, .. } in &list.groups {
-        let left_out = [outward(l, leaving), shadow.except];
-        let mut places = balls.near(l, &shadow.ray, left_out, shadow.limit);
-        loop {
-            let asked = active & !blocks.blocked & !places.same(l.int(0));
-            if !asked.any() {
-                break;
-            }
-            let place = Balls::<L::Scalar>::take_place(l, &mut places);
-            let objects = l.lookup_int(&balls.objects, place);
-            let asked = Asked::new(l, objects, ShapeKind::Sphere, leaving, asked);
-            let found = candidate(l, &balls.span_of(l, place, &shadow.ray), &asked);
+    for group in &list.groups {
+        let mut places = group
+            .balls
+            .near(l, ray, [outward(query), except], blocks.limit);
+        while let Some(found) = group.next(query, query.active & !blocks.blocked, &mut places) {
             blocks.take(&found);
         }
     }
 }
 
+impl<T: Scalar> Group<T> {
+    /// What the next ball of each of the given rays answers; `None` where none has any left.
+    #[inline(always)]
+    fn next<L: Lanes<Scalar = T>>(
+        &self,
+        query: &Query<'_, L>,
+        active: L::Mask,
+        places: &mut L::Int,
+    ) -> Option<Candidate<L>> {
+        let (l, rays) = (query.l, query.rays);
+        let asked = active & !places.same(l.int(0));
+        if !asked.any() {
+            return None;
+        }
+        let place = Balls::<T>::take_place(l, places);
+        let objects = l.lookup_int(&self.balls.objects, place);
+        let asked = Asked::new(l, objects, ShapeKind::Sphere, rays, asked);
+        let span = self.balls.span_of(l, place, &rays.ray);
+        Some(Candidate {
+            part: l.lookup_int(&self.parts, place),
+            ..asked.candidate(l, &span)
+        })
+    }
+}
+
 /// The convex object that a ray leaves outward, and so does not meet again; [`NOTHING`] for others.
 #[inline(always)]
-fn outward<L: Lanes>(l: L, leaving: &Leaving<L>) -> L::Int {
-    l.select_int(leaving.inward, l.int(NOTHING), leaving.object)
+fn outward<L: Lanes>(query: &Query<'_, L>) -> L::Int {
+    let (l, rays) = (query.l, query.rays);
+    l.select_int(rays.inward, l.int(NOTHING), rays.leaving)
 }

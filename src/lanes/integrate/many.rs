@@ -4,17 +4,16 @@
 //! one, and the lanes are boxes, or balls: the answers for a ray depend neither on its neighbours
 //! nor on their number.
 
-use super::intersect::{Asked, Blocks, Candidate, FieldHits, Leaving, Rays, Search, candidate};
-use super::model::{Many, Model};
+use super::intersect::{Asked, Blocks, Candidate, Query, Rays, Search, Searches};
+use super::model::Many;
 use super::pool::{WIDEST, array, each, int_array};
-use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
+use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
 use crate::shape::ShapeKind;
+use crate::shape::Tally;
 use crate::shape::hierarchy::{BoxRay, Child, Descent, WIDTH};
-use crate::shape::implicit::placed::ImplicitTally;
+use crate::shape::lanes::LaneRay;
 use crate::shape::lanes::balls::Balls;
-use crate::shape::lanes::implicit::{FieldQuestion, LaneImplicit};
-use crate::shape::lanes::{Enclosure, LaneRay};
 
 /// A packet's rays as arrays, to be taken one by one.
 struct Stored<T> {
@@ -29,167 +28,119 @@ struct Stored<T> {
 
 impl<T: Scalar> Stored<T> {
     #[inline(always)]
-    fn new<L: Lanes<Scalar = T>>(
-        l: L,
-        Rays { ray, leaving }: Rays<'_, L>,
-        inverse: Vec3<L::Real>,
-    ) -> Self {
-        let (o, d) = (ray.origin, ray.direction);
+    fn new<L: Lanes<Scalar = T>>(l: L, rays: &Rays<L>, inverse: Vec3<L::Real>) -> Self {
+        let arrays = inlined!(|v: Vec3<L::Real>| [array(l, v.x), array(l, v.y), array(l, v.z)]);
         Self {
-            origin: [array(l, o.x), array(l, o.y), array(l, o.z)],
-            direction: [array(l, d.x), array(l, d.y), array(l, d.z)],
-            inverse: [
-                array(l, inverse.x),
-                array(l, inverse.y),
-                array(l, inverse.z),
-            ],
-            extent: array(l, ray.extent),
-            inverse_square: array(l, ray.inverse_square),
-            leaving: int_array(l, leaving.object),
-            inward: leaving.inward.bits(),
+            origin: arrays(rays.ray.origin),
+            direction: arrays(rays.ray.direction),
+            inverse: arrays(inverse),
+            extent: array(l, rays.ray.extent),
+            inverse_square: array(l, rays.ray.inverse_square),
+            leaving: int_array(l, rays.leaving),
+            inward: rays.inward.bits(),
         }
     }
 
-    /// Ray `i` in all lanes.
+    /// Ray `i` in all lanes, and as boxes are asked about it.
     #[inline(always)]
-    fn lone<N: Lanes<Scalar = T>>(&self, n: N, i: usize) -> Lone<N> {
-        let origin = one_of(&self.origin, i);
-        let inverse = one_of(&self.inverse, i);
-        let vector = inlined(
-            #[inline(always)]
-            |[x, y, z]: [T; 3]| Vec3::new(n.splat(x), n.splat(y), n.splat(z)),
-        );
-        Lone {
+    fn alone<N: Lanes<Scalar = T>>(&self, n: N, i: usize) -> (Rays<N>, BoxRay<N>) {
+        let one = |vectors: &[[T; WIDEST]; 3]| [vectors[0][i], vectors[1][i], vectors[2][i]];
+        let vector = inlined!(|[x, y, z]: [T; 3]| Vec3::new(n.splat(x), n.splat(y), n.splat(z)));
+        let origin = one(&self.origin);
+        let rays = Rays {
             ray: LaneRay {
                 origin: vector(origin),
-                direction: vector(one_of(&self.direction, i)),
+                direction: vector(one(&self.direction)),
                 extent: n.splat(self.extent[i]),
                 inverse_square: n.splat(self.inverse_square[i]),
             },
-            leaving: Leaving {
-                object: n.int(self.leaving[i]),
-                inward: n.mask(self.inward >> i & 1 == 1),
-            },
-            boxes: BoxRay::new(n, origin, inverse),
+            leaving: n.int(self.leaving[i]),
+            inward: n.mask(self.inward >> i & 1 == 1),
+        };
+        (rays, BoxRay::new(n, origin, one(&self.inverse)))
+    }
+}
+
+impl<L: Lanes> Query<'_, L> {
+    /// About one ray, in the first of lanes that all hold it.
+    #[inline(always)]
+    fn of_one<'a, N: Lanes<Scalar = L::Scalar>>(&'a self, n: N, rays: &'a Rays<N>) -> Query<'a, N> {
+        Query {
+            l: n,
+            model: self.model,
+            rays,
+            active: n.mask_from_bits(1),
         }
     }
 }
 
-#[inline(always)]
-fn one_of<T: Copy>(vectors: &[[T; WIDEST]; 3], i: usize) -> [T; 3] {
-    [vectors[0][i], vectors[1][i], vectors[2][i]]
-}
-
-/// One ray, the same in all lanes.
-struct Lone<N: Lanes> {
-    ray: LaneRay<N>,
-    leaving: Leaving<N>,
-    boxes: BoxRay<N>,
-}
-
-impl<N: Lanes> Lone<N> {
-    /// What the balls of a group from place `from` on answer, those that are asked, and their
-    /// numbers; nothing where the ray surely misses all.
+impl<N: Lanes> Query<'_, N> {
+    /// Where one ray, the same in all lanes, crosses the balls of a group from place `from` on, but not
+    /// the object that is left out; `None` where it surely misses all.
     #[inline(always)]
-    fn ask_balls(
+    fn cross_balls(
         &self,
-        n: N,
-        balls: &Balls<N::Scalar>,
-        from: usize,
-        limit: N::Scalar,
-    ) -> Option<(Candidate<N>, N::Mask, N::Int)> {
+        (balls, from): (&Balls<N::Scalar>, usize),
+        left_out: Option<N::Int>,
+        limit: N::Real,
+    ) -> Option<Candidate<N>> {
+        let (n, rays) = (self.l, self.rays);
         let objects = n.load_int(&balls.objects[from..]);
-        let asked = Asked::new(
-            n,
-            objects,
-            ShapeKind::Sphere,
-            &self.leaving,
-            balls.present(n, from),
-        );
-        let span = balls.span(n, from, &self.ray, asked.all, n.splat(limit));
+        let mut asked = balls.present(n, from);
+        if let Some(left_out) = left_out {
+            asked = asked & !left_out.same(objects);
+        }
+        let asked = Asked::new(n, objects, ShapeKind::Sphere, rays, asked);
+        let span = balls.span(n, from, &rays.ray, asked.all, limit);
         if !asked.met(&span).any() {
             return None;
         }
-        Some((candidate(n, &span, &asked), asked.all, objects))
-    }
-
-    /// What one object answers, in all lanes.
-    #[inline(never)]
-    fn ask_object(
-        &self,
-        n: N,
-        model: &Model<N::Scalar>,
-        k: u32,
-        limit: N::Scalar,
-    ) -> Option<Candidate<N>> {
-        n.vectorize(
-            #[inline(always)]
-            || {
-                let shape = &model.shapes[k as usize];
-                let kind = shape.kind?;
-                let asked = Asked::new(n, n.int(k), kind, &self.leaving, n.mask(true));
-                let span = shape.span_by_call(n, &self.ray, asked.all, n.splat(limit));
-                if !asked.met(&span).any() {
-                    return None;
-                }
-                Some(candidate(n, &span, &asked))
-            },
-        )
+        Some(asked.candidate(n, &span))
     }
 }
 
-impl<N: Lanes> Lone<N> {
-    /// Where an implicit surface is hit before the limit.
-    #[inline(never)]
-    fn ask_field(
-        &self,
-        n: N,
-        (object, implicit): (u32, &LaneImplicit<N::Scalar>),
-        limit: N::Scalar,
-        tally: &mut ImplicitTally,
-    ) -> Option<N::Scalar> {
-        n.vectorize(
-            #[inline(always)]
-            || {
-                let question = FieldQuestion {
-                    ray: &self.ray,
-                    start: self.leaving.start_sign(n, object),
-                    limit: n.splat(limit),
-                    active: n.mask_from_bits(1),
-                };
-                let (t, found) = implicit.first_hit(n, &question, tally);
-                found.any().then(|| n.lane(t, 0))
-            },
-        )
+impl<R, I> Search<R, I> {
+    /// Each number by one of two functions.
+    #[inline(always)]
+    fn map<S, J>(&self, real: impl Fn(&R) -> S, int: impl Fn(&I) -> J) -> Search<S, J> {
+        Search {
+            low: real(&self.low),
+            high: real(&self.high),
+            part: int(&self.part),
+            rival: real(&self.rival),
+            field_t: real(&self.field_t),
+            field_part: int(&self.field_part),
+        }
     }
 }
 
-/// One ray's closest certain hit so far and what could be before it, as in [`Search`].
-struct Closest<T> {
-    low: T,
-    high: T,
-    part: u32,
-    rival: T,
-    /// The closest hit on an implicit surface and its part.
-    field: (T, u32),
-    /// What decided about those.
-    tally: ImplicitTally,
+impl<T: Scalar> Search<[T; WIDEST], [u32; WIDEST]> {
+    /// Writes down what ray `i` has found.
+    #[inline(always)]
+    fn set(&mut self, i: usize, one: Search<T, u32>) {
+        self.low[i] = one.low;
+        self.high[i] = one.high;
+        self.part[i] = one.part;
+        self.rival[i] = one.rival;
+        self.field_t[i] = one.field_t;
+        self.field_part[i] = one.field_part;
+    }
 }
 
-impl<T: Scalar> Closest<T> {
+impl<T: Scalar> Search<T, u32> {
     /// Where whatever comes later cannot count any more.
     #[inline(always)]
-    fn limit(&self) -> T {
-        if self.field.0 < self.high {
-            self.field.0
+    fn end(&self) -> T {
+        if self.field_t < self.high {
+            self.field_t
         } else {
             self.high
         }
     }
 
-    /// Counts the lanes of `bits`, whose objects have parts by `part_of`.
+    /// Takes the crossings of one ray in the lanes of `bits` into account, whose parts are `part_of`.
     #[inline(always)]
-    fn take<N: Lanes<Scalar = T>>(
+    fn take_each<N: Lanes<Scalar = T>>(
         &mut self,
         n: N,
         candidate: &Candidate<N>,
@@ -221,118 +172,78 @@ impl<T: Scalar> Closest<T> {
 /// The closest hits of the active rays.
 #[inline(never)]
 pub(super) fn search<L: Lanes>(
-    l: L,
-    model: &Model<L::Scalar>,
+    query: &Query<'_, L>,
     many: &Many<L::Scalar>,
-    rays: Rays<'_, L>,
-    active: L::Mask,
-) -> Search<L> {
-    l.vectorize(
-        #[inline(always)]
-        || {
-            let mut search = Search::new(l);
-            for &k in &many.broad {
-                search.ask_alone(l, model, k, rays, active);
-            }
-            let ray = rays.ray;
-            let inverse = ray.direction.reciprocal(l);
-            let met = many.boxes.all.meets(l, ray.origin, inverse, search.limit());
-            let met = (active & met).bits();
-            if met == 0 {
-                return search;
-            }
-            let mut low = array(l, search.best.low);
-            let mut high = array(l, search.best.high);
-            let mut part = int_array(l, search.part);
-            let mut rival = array(l, search.rival);
-            let mut field_t = array(l, search.fields.t);
-            let mut field_part = int_array(l, search.fields.part);
-            let mut tally = search.fields.tally;
-            let n = l.narrow();
-            let stored = Stored::new(l, rays, inverse);
-            let mut descent = Descent::new();
-            for i in each(met) {
-                let mut closest = Closest {
-                    low: low[i],
-                    high: high[i],
-                    part: part[i],
-                    rival: rival[i],
-                    field: (field_t[i], field_part[i]),
-                    tally,
-                };
-                descent.restart();
-                closest_along(
-                    n,
-                    model,
-                    many,
-                    &stored.lone(n, i),
-                    &mut descent,
-                    &mut closest,
-                );
-                low[i] = closest.low;
-                high[i] = closest.high;
-                part[i] = closest.part;
-                rival[i] = closest.rival;
-                (field_t[i], field_part[i]) = closest.field;
-                tally = closest.tally;
-            }
-            Search {
-                best: Enclosure {
-                    low: l.load(&low),
-                    high: l.load(&high),
-                },
-                part: l.load_int(&part),
-                rival: l.load(&rival),
-                fields: FieldHits {
-                    t: l.load(&field_t),
-                    part: l.load_int(&field_part),
-                    tally,
-                },
-            }
-        },
-    )
+    tally: &mut Tally,
+) -> Searches<L> {
+    let l = query.l;
+    l.vectorize(inlined!(|| {
+        let mut search = query.nothing_yet();
+        for &k in &many.broad {
+            query.ask_any(&mut search, k, tally);
+        }
+        let ray = &query.rays.ray;
+        let inverse = ray.direction.reciprocal(l);
+        let limit = search.field_t.min(search.high);
+        let met = query.active & many.boxes.all.meets(l, ray.origin, inverse, limit);
+        if !met.any() {
+            return search;
+        }
+        let mut found = search.map(
+            inlined!(|x: &L::Real| array(l, *x)),
+            inlined!(|x: &L::Int| int_array(l, *x)),
+        );
+        let n = l.narrow();
+        let stored = Stored::new(l, query.rays, inverse);
+        let mut descent = Descent::default();
+        for i in each(met.bits()) {
+            let (rays, boxes) = stored.alone(n, i);
+            let query = query.of_one(n, &rays);
+            let mut closest = found.map(|x| x[i], |x| x[i]);
+            descent.restart();
+            search_along(&query, many, (&boxes, &mut descent), &mut closest, tally);
+            found.set(i, closest);
+        }
+        found.map(
+            inlined!(|x: &[L::Scalar; WIDEST]| l.load(x)),
+            inlined!(|x: &[u32; WIDEST]| l.load_int(x)),
+        )
+    }))
 }
 
 /// Asks what one ray meets the boxes of, nearest boxes first.
 #[inline(always)]
-fn closest_along<N: Lanes>(
-    n: N,
-    model: &Model<N::Scalar>,
+fn search_along<N: Lanes>(
+    query: &Query<'_, N>,
     many: &Many<N::Scalar>,
-    lone: &Lone<N>,
-    descent: &mut Descent<N::Scalar>,
-    closest: &mut Closest<N::Scalar>,
+    (boxes, descent): (&BoxRay<N>, &mut Descent<N::Scalar>),
+    closest: &mut Search<N::Scalar, u32>,
+    tally: &mut Tally,
 ) {
+    let (n, model) = (query.l, query.model);
     let first = |object: u32| model.parts.first[object as usize];
-    while let Some(child) = many
-        .boxes
-        .next::<N, true>(n, descent, &lone.boxes, closest.limit())
-    {
+    while let Some(child) = many.boxes.next::<N, true>(n, descent, boxes, closest.end()) {
         match child {
             Child::Balls(balls) => {
                 for from in (0..balls.count).step_by(N::COUNT) {
-                    let asked = lone.ask_balls(n, balls, from, closest.limit());
-                    let Some((candidate, asked, _)) = asked else {
-                        continue;
-                    };
-                    let bits = (candidate.possible & asked).bits();
-                    closest.take(n, &candidate, bits, |i| {
-                        first(balls.objects[(from + i) % WIDTH])
-                    });
+                    let limit = n.splat(closest.end());
+                    if let Some(c) = query.cross_balls((balls, from), None, limit) {
+                        closest.take_each(n, &c, c.possible.bits(), |i| {
+                            first(balls.objects[(from + i) % WIDTH])
+                        });
+                    }
                 }
             }
             Child::Object(k) => {
+                let limit = n.splat(closest.end());
                 if let Some(implicit) = model.implicit(k) {
-                    let limit = closest.limit();
-                    let tally = &mut closest.tally;
-                    if let Some(t) = lone.ask_field(n, (k, implicit), limit, tally) {
-                        closest.field = (t, first(k));
+                    let (t, found) = query.hit_field((k, implicit), query.active, limit, tally);
+                    if found.any() {
+                        (closest.field_t, closest.field_part) = (n.lane(t, 0), first(k));
                     }
-                } else if let Some(candidate) = lone.ask_object(n, model, k, closest.limit()) {
-                    let bits = candidate.possible.bits() & 1;
-                    closest.take(n, &candidate, bits, |_| {
-                        first(k) + n.int_lane(candidate.part, 0)
-                    });
+                } else if let Some(c) = query.cross_alone(k, query.active, limit) {
+                    let bits = c.possible.bits();
+                    closest.take_each(n, &c, bits, |_| n.int_lane(c.part, 0));
                 }
             }
         }
@@ -342,164 +253,102 @@ fn closest_along<N: Lanes>(
 /// Adds which of the active shadow rays are blocked.
 #[inline(never)]
 pub(super) fn blocks<L: Lanes>(
-    l: L,
-    model: &Model<L::Scalar>,
+    query: &Query<'_, L>,
     many: &Many<L::Scalar>,
-    blocks: &mut Blocks<'_, L>,
-    active: L::Mask,
+    blocks: &mut Blocks<L>,
+    tally: &mut Tally,
 ) {
-    l.vectorize(
-        #[inline(always)]
-        || {
-            let shadow = blocks.shadow;
-            for &k in many.broad.iter().filter(|k| many.hides[**k as usize]) {
-                blocks.ask_alone(l, model, k, active);
-            }
-            let inverse = shadow.ray.direction.reciprocal(l);
-            let (origin, limit) = (shadow.ray.origin, shadow.limit);
-            let met = many.boxes.all.meets(l, origin, inverse, limit);
-            let met = (active & met & !blocks.blocked).bits();
-            if met == 0 {
-                return;
-            }
-            let n = l.narrow();
-            let stored = Stored::new(l, blocks.rays, inverse);
-            let limits = array(l, shadow.limit);
-            let excepted = int_array(l, shadow.except);
-            let mut descent = Descent::new();
-            let (mut blocked, mut doubtful) = (0, 0);
-            for i in each(met) {
-                descent.restart();
-                let lone = stored.lone(n, i);
-                let end = End {
-                    limit: limits[i],
-                    except: n.int(excepted[i]),
-                };
-                let found = block_along(n, model, &lone, &end, (&mut descent, &mut blocks.tally));
-                blocked |= u32::from(found == Block::Sure) << i;
-                doubtful |= u32::from(found == Block::Doubtful) << i;
-            }
-            blocks.blocked = blocks.blocked | l.mask_from_bits(blocked);
-            blocks.doubtful = blocks.doubtful | l.mask_from_bits(doubtful);
-        },
-    )
-}
-
-/// Where a shadow ray ends.
-struct End<N: Lanes> {
-    limit: N::Scalar,
-    except: N::Int,
-}
-
-/// What is before a shadow ray's end.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Block {
-    Nothing,
-    Doubtful,
-    Sure,
-}
-
-impl<N: Lanes> End<N> {
-    /// What a candidate of the given objects is, for the lanes in `asked`.
-    #[inline(always)]
-    fn judge(&self, n: N, c: &Candidate<N>, asked: N::Mask, objects: N::Int) -> Block {
-        let limit = n.splat(self.limit);
-        let counted = c.possible & asked & !self.except.same(objects);
-        if (c.certain & c.at.high.lt(limit) & counted).any() {
-            Block::Sure
-        } else if (c.at.low.lt(limit) & counted).any() {
-            Block::Doubtful
-        } else {
-            Block::Nothing
+    let l = query.l;
+    l.vectorize(inlined!(|| {
+        for &k in many.broad.iter().filter(|k| many.hides[**k as usize]) {
+            blocks.ask_any(query, k, tally);
         }
-    }
+        let ray = &query.rays.ray;
+        let inverse = ray.direction.reciprocal(l);
+        let met = many.boxes.all.meets(l, ray.origin, inverse, blocks.limit);
+        let met = query.active & met & !blocks.blocked;
+        if !met.any() {
+            return;
+        }
+        let n = l.narrow();
+        let stored = Stored::new(l, query.rays, inverse);
+        let (limits, excepted) = (array(l, blocks.limit), int_array(l, blocks.except));
+        let mut descent = Descent::default();
+        let (mut blocked, mut doubtful) = (0, 0);
+        for i in each(met.bits()) {
+            let (rays, boxes) = stored.alone(n, i);
+            let query = query.of_one(n, &rays);
+            let mut own = Blocks::new(n, n.splat(limits[i]), n.int(excepted[i]));
+            descent.restart();
+            let boxes = (&boxes, &mut descent, limits[i]);
+            block_along(&query, many, boxes, &mut own, tally);
+            blocked |= u32::from(own.blocked.any()) << i;
+            doubtful |= u32::from(own.doubtful.any()) << i;
+        }
+        blocks.blocked = blocks.blocked | l.mask_from_bits(blocked);
+        blocks.doubtful = blocks.doubtful | l.mask_from_bits(doubtful);
+    }));
 }
 
 /// Asks what one shadow ray meets the boxes of, until it is surely blocked.
 #[inline(always)]
 fn block_along<N: Lanes>(
-    n: N,
-    model: &Model<N::Scalar>,
-    lone: &Lone<N>,
-    end: &End<N>,
-    (descent, tally): (&mut Descent<N::Scalar>, &mut ImplicitTally),
-) -> Block {
-    let mut all = Block::Nothing;
-    let Some(many) = &model.hierarchy else {
-        return all;
-    };
-    while let Some(child) = many
-        .boxes
-        .next::<N, false>(n, descent, &lone.boxes, end.limit)
-    {
-        let found = match child {
+    query: &Query<'_, N>,
+    many: &Many<N::Scalar>,
+    (boxes, descent, limit): (&BoxRay<N>, &mut Descent<N::Scalar>, N::Scalar),
+    blocks: &mut Blocks<N>,
+    tally: &mut Tally,
+) {
+    let n = query.l;
+    while let Some(child) = many.boxes.next::<N, false>(n, descent, boxes, limit) {
+        match child {
             Child::Balls(balls) => {
-                let mut found = Block::Nothing;
                 for from in (0..balls.count).step_by(N::COUNT) {
-                    if let Some((c, asked, objects)) = lone.ask_balls(n, balls, from, end.limit) {
-                        found = found.max(end.judge(n, &c, asked, objects));
-                    }
-                }
-                found
-            }
-            Child::Object(k) if !many.hides[k as usize] => Block::Nothing,
-            Child::Object(k) => {
-                if let Some(implicit) = model.implicit(k) {
-                    let counts = !end.except.same(n.int(k)).any();
-                    let hit = counts
-                        .then(|| lone.ask_field(n, (k, implicit), end.limit, tally))
-                        .flatten();
-                    hit.map_or(Block::Nothing, |_| Block::Sure)
-                } else {
-                    match lone.ask_object(n, model, k, end.limit) {
-                        Some(c) => end.judge(n, &c, n.mask(true), n.int(k)),
-                        None => Block::Nothing,
+                    let except = Some(blocks.except);
+                    if let Some(c) = query.cross_balls((balls, from), except, blocks.limit) {
+                        blocks.take(&c);
                     }
                 }
             }
-        };
-        if found == Block::Sure {
-            return Block::Sure;
+            Child::Object(k) if many.hides[k as usize] => blocks.ask_any(query, k, tally),
+            Child::Object(_) => {}
         }
-        all = all.max(found);
+        if blocks.blocked.any() {
+            return;
+        }
     }
-    all
 }
 
 /// The objects that one lane's ray could meet before `limit` for all that lanes know; `None` for
 /// all.
 #[cold]
 pub(super) fn candidates<L: Lanes>(
-    l: L,
-    model: &Model<L::Scalar>,
-    rays: Rays<'_, L>,
+    query: &Query<'_, L>,
     i: usize,
     limit: L::Scalar,
 ) -> Option<Vec<u32>> {
-    let many = model.hierarchy.as_ref()?;
-    let n = l.narrow();
-    let inverse = rays.ray.direction.reciprocal(l);
-    let lone = Stored::new(l, rays, inverse).lone(n, i);
-    let before = |c: &Candidate<L::Narrow>| c.possible & c.at.low.le(n.splat(limit));
-    let mut descent = Descent::new();
+    let many = query.model.hierarchy.as_ref()?;
+    let n = query.l.narrow();
+    let inverse = query.rays.ray.direction.reciprocal(query.l);
+    let (rays, boxes) = Stored::new(query.l, query.rays, inverse).alone(n, i);
+    let query = query.of_one(n, &rays);
+    let end = n.splat(limit);
+    let before = |c: &Candidate<L::Narrow>| (c.possible & c.at.low.le(end)).bits();
+    let mut descent = Descent::default();
     descent.restart();
     let mut objects = many.broad.clone();
-    while let Some(child) = many
-        .boxes
-        .next::<_, false>(n, &mut descent, &lone.boxes, limit)
-    {
+    while let Some(child) = many.boxes.next::<_, false>(n, &mut descent, &boxes, limit) {
         match child {
             Child::Balls(balls) => {
                 for from in (0..balls.count).step_by(L::Narrow::COUNT) {
-                    if let Some((c, asked, _)) = lone.ask_balls(n, balls, from, limit) {
-                        let met = each((before(&c) & asked).bits());
-                        objects.extend(met.map(|i| balls.objects[from + i]));
+                    if let Some(c) = query.cross_balls((balls, from), None, end) {
+                        objects.extend(each(before(&c)).map(|i| balls.objects[from + i]));
                     }
                 }
             }
             Child::Object(k) => {
-                let answer = lone.ask_object(n, model, k, limit);
-                if answer.is_some_and(|c| before(&c).any()) {
+                let answer = query.cross_alone(k, query.active, end);
+                if answer.is_some_and(|c| before(&c) != 0) {
                     objects.push(k);
                 }
             }

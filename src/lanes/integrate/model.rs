@@ -1,4 +1,4 @@
-//! What the loop works on: the scene as flat tables of lane scalars, built by the plan.
+//! The scene as the loop reads it: flat tables of scalars of one precision, built by the plan.
 
 use super::list::List;
 use super::needs::Needs;
@@ -7,6 +7,7 @@ use crate::camera::LaneCamera;
 use crate::light::{LaneLight, SmallLights};
 use crate::material::Record;
 use crate::math::lanes::Scalar;
+use crate::planted::Planted;
 use crate::sample::sequence::Sequence;
 use crate::shape::hierarchy::{Bounds, Hierarchy, Item};
 use crate::shape::lanes::LaneShape;
@@ -17,9 +18,9 @@ use crate::spectrum::grid::SpectrumBank;
 /// What an object looks like to the loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Appearance<T> {
-    /// How it scatters.
+    /// Its material.
     pub surface: Record<T>,
-    /// Spectrum of the emitted radiance.
+    /// Where the spectrum of the emitted radiance stands in the bank.
     pub emission: Option<u32>,
     /// Whether the front and the back emit.
     pub emits: [bool; 2],
@@ -29,12 +30,12 @@ pub struct Appearance<T> {
     pub material: u32,
 }
 
-/// Many objects.
+/// The index of a scene with many objects.
 #[derive(Debug, Clone)]
 pub struct Many<T> {
     /// Objects that most rays have to ask: infinite planes and those whose boxes are broad.
     pub broad: Vec<u32>,
-    /// Boxes over the others.
+    /// Boxes over the other objects.
     pub boxes: Hierarchy<T>,
     /// Whether an object can hide a light from a surface, by object.
     pub hides: Vec<bool>,
@@ -48,7 +49,7 @@ const MOST_BROAD: usize = 8;
 const BROAD: f64 = 0.25;
 
 impl<T: Scalar> Many<T> {
-    /// Of the objects with bounds, those without, and those that can hide lights, in order.
+    /// From objects with bounds, objects without, and those that can hide lights, each in order.
     pub fn new(
         bounded: &[Item],
         unbounded: Vec<u32>,
@@ -90,40 +91,36 @@ impl<T: Scalar> Many<T> {
 /// Everything the loop reads.
 #[derive(Debug)]
 pub struct Model<T: Scalar> {
-    /// Rays for pixels.
     pub camera: LaneCamera<T>,
-    /// Random points.
     pub sequence: Sequence,
     /// Longest path in segments; `u32::MAX` where there is no limit.
     pub max_depth: u32,
-    /// What can happen.
+    /// The branches that the loop takes.
     pub needs: Needs,
-    /// Boxes over the shapes, where there are many; `None` is a list.
+    /// The index of many objects; without one, `list` and `occluders` are asked.
     pub hierarchy: Option<Many<T>>,
-    /// Placed shapes by object.
+    /// The shape of each object.
     pub shapes: Vec<LaneShape<T>>,
-    /// All objects; asked where there is no hierarchy.
+    /// All objects.
     pub list: List<T>,
     /// The objects that shadow rays are tested against.
     pub occluders: List<T>,
     /// Implicit surfaces: (object, surface), in order of the objects.
     pub implicits: Vec<(u32, LaneImplicit<T>)>,
-    /// What hits look like, by part.
     pub parts: Parts<T>,
     pub appearances: Vec<Appearance<T>>,
-    /// Samplable lights.
+    /// The lights that can be sampled.
     pub lights: Vec<LaneLight<T>>,
-    /// The lights once more, where several can be sampled together.
+    /// The same by column, where several can be sampled together.
     pub small_lights: Option<Box<SmallLights<T>>>,
-    /// Spectrum of the environment.
+    /// Where the spectrum of the environment stands in the bank.
     pub environment: Option<u32>,
     /// All spectra on the wavelength grid.
     pub spectra: SpectrumBank<T>,
-    /// Decides what lanes cannot.
+    /// Decides about rays that lanes leave undecided.
     pub resolver: Resolver,
-    /// A deliberate mistake.
-    #[cfg(feature = "planted")]
-    pub planted: Option<crate::planted::Planted>,
+    /// A deliberate mistake, for builds that make it.
+    pub planted: Option<Planted>,
 }
 
 impl<T: Scalar> Model<T> {

@@ -1,7 +1,7 @@
-//! What the loop knows of each part of each object, by the part's number.
+//! The parts of objects (faces, curved walls), numbered throughout a scene, and what a hit on each needs:
+//! geometry, material, emission.
 
 use super::model::Appearance;
-use super::needs::Needs;
 use crate::material::SPECTRA;
 use crate::math::lanes::Scalar;
 use crate::math::lookup::SMALL;
@@ -12,22 +12,21 @@ use crate::shape::lanes::part::{Part, PartKind};
 pub mod word {
     /// Mask of the [`MaterialKind`](crate::material::MaterialKind).
     pub const KIND: u32 = 0xff;
-    /// Two parallel faces.
+    /// A pair of parallel faces.
     pub const FACES: u32 = 1 << 8;
     pub const BALL: u32 = 1 << 9;
-    /// A shape that computes its own surface.
+    /// The shape itself computes points and normals.
     pub const OTHER: u32 = 1 << 10;
     /// Refraction by the material disperses.
     pub const DISPERSES: u32 = 1 << 11;
-    /// The spectra depend on the place.
+    /// A texture chooses the spectra by the place.
     pub const TEXTURED: u32 = 1 << 12;
-    /// The outward side emits.
+    /// The outward side (+z of flat shapes) emits.
     pub const EMITS_FRONT: u32 = 1 << 13;
     /// The other side emits.
     pub const EMITS_BACK: u32 = 1 << 14;
     /// Part of a convex closed shape, whose exits are seen from inside.
     pub const CLOSED: u32 = 1 << 15;
-    /// Either side emits.
     pub const EMITS: u32 = EMITS_FRONT | EMITS_BACK;
 
     /// The branches of the loop that bits of words open.
@@ -46,10 +45,10 @@ pub mod word {
 /// Marks objects that no light stands for.
 pub const NO_LIGHT: u32 = u32::MAX;
 
-/// What is known of parts, as reals R and integers I: of one part as numbers ([`Entry`]), of a few as
-/// tables to look numbers up in, of those that a packet has met as lanes.
+/// The numbers of parts, as reals R and integers I: of one part ([`Entry`]), of a few as tables to
+/// look numbers up in ([`SmallTable`]), or of those that a packet has met.
 #[derive(Debug, Clone, Copy)]
-pub struct Look<R, I> {
+pub struct PartData<R, I> {
     /// [`Part::vector`].
     pub vector: [R; 3],
     /// [`Part::level`].
@@ -68,57 +67,11 @@ pub struct Look<R, I> {
     pub light: I,
 }
 
-pub type Entry<T> = Look<T, u32>;
+/// The numbers of one part.
+pub type Entry<T> = PartData<T, u32>;
 
-/// The entries by column, where they are few.
-pub type SmallTable<T> = Look<[T; SMALL], [u32; SMALL]>;
-
-impl<R, I> Look<R, I> {
-    /// Both together, column by column.
-    #[inline(always)]
-    pub fn zip<S, J, U, V>(
-        &self,
-        other: &Look<S, J>,
-        real: impl Fn(&R, &S) -> U,
-        int: impl Fn(&I, &J) -> V,
-    ) -> Look<U, V> {
-        Look {
-            vector: [
-                real(&self.vector[0], &other.vector[0]),
-                real(&self.vector[1], &other.vector[1]),
-                real(&self.vector[2], &other.vector[2]),
-            ],
-            level: real(&self.level, &other.level),
-            half: real(&self.half, &other.half),
-            object: int(&self.object, &other.object),
-            word: int(&self.word, &other.word),
-            spectra: [
-                int(&self.spectra[0], &other.spectra[0]),
-                int(&self.spectra[1], &other.spectra[1]),
-            ],
-            emission: int(&self.emission, &other.emission),
-            light: int(&self.light, &other.light),
-        }
-    }
-}
-
-impl Look<bool, bool> {
-    /// Which columns say anything.
-    #[inline(always)]
-    pub fn wanted(needs: Needs) -> Self {
-        let emits = needs.has(word::EMITS);
-        Self {
-            vector: [true; 3],
-            level: true,
-            half: needs.has(word::FACES),
-            object: true,
-            word: true,
-            spectra: [true; SPECTRA],
-            emission: emits,
-            light: emits,
-        }
-    }
-}
+/// The numbers of up to [`SMALL`] parts by column.
+pub type SmallTable<T> = PartData<[T; SMALL], [u32; SMALL]>;
 
 impl<T: Scalar> Entry<T> {
     fn new(object: u32, part: &Part<T>, closed: bool, appearance: &Appearance<T>) -> Self {
@@ -137,26 +90,23 @@ impl<T: Scalar> Entry<T> {
 
 impl<T: Scalar> SmallTable<T> {
     fn of(entries: &[Entry<T>]) -> Self {
-        let empty = Self {
-            vector: [[T::default(); SMALL]; 3],
-            level: [T::default(); SMALL],
-            half: [T::default(); SMALL],
-            object: [0; SMALL],
-            word: [0; SMALL],
-            spectra: [[0; SMALL]; SPECTRA],
-            emission: [0; SMALL],
-            light: [0; SMALL],
+        let real = |number: &dyn Fn(&Entry<T>) -> T| {
+            std::array::from_fn(|k| entries.get(k).map_or(T::default(), number))
         };
-        entries.iter().enumerate().fold(empty, |table, (k, entry)| {
-            table.zip(entry, |c, x| with(c, k, *x), |c, x| with(c, k, *x))
-        })
+        let int = |number: &dyn Fn(&Entry<T>) -> u32| {
+            std::array::from_fn(|k| entries.get(k).map_or(0, number))
+        };
+        Self {
+            vector: [0, 1, 2].map(|axis| real(&|entry| entry.vector[axis])),
+            level: real(&|entry| entry.level),
+            half: real(&|entry| entry.half),
+            object: int(&|entry| entry.object),
+            word: int(&|entry| entry.word),
+            spectra: [0, 1].map(|which| int(&|entry| entry.spectra[which])),
+            emission: int(&|entry| entry.emission),
+            light: int(&|entry| entry.light),
+        }
     }
-}
-
-fn with<V: Copy>(column: &[V; SMALL], k: usize, value: V) -> [V; SMALL] {
-    let mut column = *column;
-    column[k] = value;
-    column
 }
 
 /// All parts of a scene.
@@ -165,12 +115,12 @@ pub struct Parts<T> {
     pub entries: Vec<Entry<T>>,
     /// Number of each object's first part.
     pub first: Vec<u32>,
-    /// The entries once more, where they are few.
+    /// The entries by column, where they are few.
     pub small: Option<Box<SmallTable<T>>>,
 }
 
 impl<T: Scalar> Parts<T> {
-    /// Of objects with their appearance.
+    /// The parts of shapes whose objects look like this.
     pub fn new(shapes: &[LaneShape<T>], appearances: &[Appearance<T>]) -> Self {
         let mut parts = Self::default();
         for (k, (shape, appearance)) in shapes.iter().zip(appearances).enumerate() {

@@ -2,52 +2,59 @@
 //!
 //! Paths end at different times. Each pass over the pool advances all of them by one segment and
 //! writes the survivors down one after the other, in order; new camera samples fill the free end, so
-//! that lanes stay full. Only what changes places with a path lies in the pool;
-//! its spectra lie in rows by sample ([`Rows`]) and stay where they are.
+//! that lanes stay full. The pool holds what moves with a path; its spectra lie in rows by sample
+//! ([`Rows`]) and stay where they are.
 
 pub use crate::math::lanes::WIDEST;
-use crate::math::lanes::{Int, Lanes, Mask, Scalar};
+use crate::math::lanes::{Int, Lanes, Scalar};
 pub use crate::math::packet::{array, each, int_array};
+use crate::math::vec3::Vec3;
+use crate::sample::sequence::Identity;
 
-/// Real numbers of a path.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(usize)]
-pub enum RealField {
-    /// Origin of the next segment, three numbers.
-    Origin = 0,
-    /// Its unit direction, three numbers.
-    Direction = 3,
-    /// Solid-angle density with which the direction was chosen.
-    Pdf = 6,
-}
-
-/// Number of reals.
+/// Paths in flight: a multiple of every lane count, small enough to stay in the cache beside the
+/// results.
+pub const POOL: usize = 512;
+/// Places for numbers of paths: a packet may be stored at any, so it may reach past the last path.
+const PLACES: usize = POOL + WIDEST;
+/// Reals and integers of a path.
 const REALS: usize = 7;
-
-/// Integers of a path.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(usize)]
-pub enum IntField {
-    /// Object that the segment leaves.
-    Departure = 0,
-    /// Bits of [`flags`].
-    Flags = 1,
-    /// Segments traced so far.
-    Depth = 2,
-    /// Sampler key.
-    Key = 3,
-    /// Index within the replicate.
-    Index = 4,
-    /// Where its spectra are among [`Rows`].
-    Slot = 5,
-    /// Which row of every table holds its wavelengths.
-    Row = 6,
-}
-
-/// Number of integers.
 const INTS: usize = 7;
 
-/// What is known of a path besides numbers.
+/// A packet of paths.
+#[derive(Clone, Copy)]
+pub struct Paths<L: Lanes> {
+    /// Origins of the next segments.
+    pub origin: Vec3<L::Real>,
+    /// Their unit directions.
+    pub direction: Vec3<L::Real>,
+    /// Solid-angle densities with which the directions were chosen, sr⁻¹.
+    pub pdf: L::Real,
+    /// Objects that the segments leave, or [`NOTHING`](super::intersect::NOTHING).
+    pub leaving: L::Int,
+    /// Bits of [`flags`].
+    pub flags: L::Int,
+    /// Which random numbers are theirs; the bounce is the number of segments traced so far.
+    pub id: Identity<L>,
+    /// Where their spectra are among [`Rows`].
+    pub slot: L::Int,
+    /// Which row of every table holds their wavelengths.
+    pub row: L::Int,
+}
+
+impl<L: Lanes> Paths<L> {
+    /// In the order of the pool's columns.
+    #[inline(always)]
+    fn numbers(&self) -> ([L::Real; REALS], [L::Int; INTS]) {
+        let (o, d, id) = (self.origin, self.direction, self.id);
+        let (leaving, flags, slot, row) = (self.leaving, self.flags, self.slot, self.row);
+        (
+            [o.x, o.y, o.z, d.x, d.y, d.z, self.pdf],
+            [leaving, flags, id.key, id.index, id.bounce, slot, row],
+        )
+    }
+}
+
+/// Truths about a path, one a bit.
 pub mod flags {
     /// The segment goes into the object it leaves.
     pub const INWARD: u32 = 1;
@@ -59,37 +66,27 @@ pub mod flags {
     pub const BEYOND: u32 = 8;
 }
 
-/// Paths in flight.
+/// Paths in flight, their numbers by column.
 #[derive(Debug)]
 pub struct Pool<T> {
-    capacity: usize,
     /// Number of paths.
     pub length: usize,
-    reals: Vec<T>,
-    ints: Vec<u32>,
+    reals: Box<[[T; PLACES]; REALS]>,
+    ints: Box<[[u32; PLACES]; INTS]>,
 }
 
 /// A path's values at its wavelengths, which are wanted together.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub struct Carried<T, const C: usize> {
-    /// Throughput of the path so far.
+    /// Product of bsdf · |cos|/pdf over the vertices so far.
     pub throughput: [T; C],
-    /// Radiance gathered.
+    /// Radiance gathered so far, W·m⁻²·sr⁻¹·nm⁻¹.
     pub radiance: [T; C],
 }
 
 impl<T: Scalar, const C: usize> Carried<T, C> {
-    /// At the camera.
-    #[inline(always)]
-    pub fn new() -> Self {
-        Self {
-            throughput: [T::from_f64(1.0); C],
-            radiance: [T::default(); C],
-        }
-    }
-
-    /// Multiplies the throughput.
+    /// Multiplies the throughput by a factor at each wavelength.
     #[inline(always)]
     pub fn weigh(&mut self, factors: &[T; C]) {
         for (throughput, factor) in self.throughput.iter_mut().zip(factors) {
@@ -107,9 +104,14 @@ impl<T: Scalar, const C: usize> Carried<T, C> {
     }
 }
 
+/// What a path carries at the camera.
 impl<T: Scalar, const C: usize> Default for Carried<T, C> {
+    #[inline(always)]
     fn default() -> Self {
-        Self::new()
+        Self {
+            throughput: [T::from_f64(1.0); C],
+            radiance: [T::default(); C],
+        }
     }
 }
 
@@ -127,10 +129,10 @@ pub struct Rows<T, const C: usize> {
 }
 
 impl<T: Scalar, const C: usize> Rows<T, C> {
-    /// Room for `samples` samples.
+    /// Rows for so many samples.
     pub fn new(samples: usize) -> Self {
         Self {
-            paths: vec![Carried::new(); samples],
+            paths: vec![Carried::default(); samples],
             row: vec![0; samples],
             hero: vec![0; samples],
             fraction: vec![T::default(); samples],
@@ -138,91 +140,63 @@ impl<T: Scalar, const C: usize> Rows<T, C> {
     }
 }
 
-impl<T: Copy + Default> Pool<T> {
-    /// An empty pool for `paths` paths.
-    pub fn new(paths: usize) -> Self {
-        // A packet may be stored at any place, so it may reach past the last path.
-        let capacity = paths + WIDEST;
+impl<T: Scalar> Default for Pool<T> {
+    fn default() -> Self {
         Self {
-            capacity,
             length: 0,
-            reals: vec![T::default(); REALS * capacity],
-            ints: vec![0; INTS * capacity],
+            reals: Box::new([[T::default(); PLACES]; REALS]),
+            ints: Box::new([[0; PLACES]; INTS]),
+        }
+    }
+}
+
+impl<T: Scalar> Pool<T> {
+    /// The packet at `at`, and the lanes in which it holds paths.
+    #[inline(always)]
+    pub fn read<L: Lanes<Scalar = T>>(&self, l: L, at: usize) -> (Paths<L>, L::Mask) {
+        let real = inlined!(|i: usize| l.load(&self.reals[i][at..]));
+        let int = inlined!(|i: usize| l.load_int(&self.ints[i][at..]));
+        let paths = Paths {
+            origin: Vec3::new(real(0), real(1), real(2)),
+            direction: Vec3::new(real(3), real(4), real(5)),
+            pdf: real(6),
+            leaving: int(0),
+            flags: int(1),
+            id: Identity {
+                key: int(2),
+                index: int(3),
+                bounce: int(4),
+            },
+            slot: int(5),
+            row: int(6),
+        };
+        let here = (self.length - at).min(L::COUNT);
+        (paths, l.mask_from_bits(((1u64 << here) - 1) as u32))
+    }
+
+    /// Writes a packet at `at`.
+    #[inline(always)]
+    pub fn write<L: Lanes<Scalar = T>>(&mut self, l: L, at: usize, paths: &Paths<L>) {
+        let (reals, ints) = paths.numbers();
+        for (column, x) in self.reals.iter_mut().zip(reals) {
+            l.store(x, &mut column[at..]);
+        }
+        for (column, x) in self.ints.iter_mut().zip(ints) {
+            l.store_int(x, &mut column[at..]);
         }
     }
 
-    /// Bits of the lanes that hold paths in the packet at `at`.
+    /// Writes the paths in the lanes of `keep` from `at` on; of what stood in the rest of a packet
+    /// there, nothing is left.
     #[inline(always)]
-    pub fn active<L: Lanes>(&self, at: usize) -> u32 {
-        let here = (self.length - at).min(L::COUNT);
-        ((1u64 << here) - 1) as u32
-    }
-
-    /// Reads a packet of a field's component.
-    #[inline(always)]
-    pub fn real<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        field: RealField,
-        i: usize,
-        at: usize,
-    ) -> L::Real {
-        l.load(&self.reals[(field as usize + i) * self.capacity + at..])
-    }
-
-    /// Writes a packet of a field's component.
-    #[inline(always)]
-    pub fn set_real<L: Lanes<Scalar = T>>(
-        &mut self,
-        l: L,
-        field: RealField,
-        i: usize,
-        at: usize,
-        x: L::Real,
-    ) {
-        let at = (field as usize + i) * self.capacity + at;
-        l.store(x, &mut self.reals[at..]);
-    }
-
-    /// Reads a packet of an integer field.
-    #[inline(always)]
-    pub fn int<L: Lanes<Scalar = T>>(&self, l: L, field: IntField, at: usize) -> L::Int {
-        l.load_int(&self.ints[field as usize * self.capacity + at..])
-    }
-
-    /// Writes a packet of an integer field.
-    #[inline(always)]
-    pub fn set_int<L: Lanes<Scalar = T>>(&mut self, l: L, field: IntField, at: usize, x: L::Int) {
-        let at = field as usize * self.capacity + at;
-        l.store_int(x, &mut self.ints[at..]);
-    }
-
-    /// Writes the lanes in `keep` of a field's component from `at` on; of what stood in the rest of a
-    /// packet there, nothing is left.
-    #[inline(always)]
-    pub fn keep_real<L: Lanes<Scalar = T>>(
-        &mut self,
-        l: L,
-        field: RealField,
-        i: usize,
-        at: usize,
-        (x, keep): (L::Real, L::Mask),
-    ) {
-        let at = (field as usize + i) * self.capacity + at;
-        l.compress_into(x, keep, &mut self.reals[at..]);
-    }
-
-    /// The same of an integer field.
-    #[inline(always)]
-    pub fn keep_int<L: Lanes<Scalar = T>>(
-        &mut self,
-        l: L,
-        field: IntField,
-        at: usize,
-        (x, keep): (L::Int, L::Mask),
-    ) {
-        let at = field as usize * self.capacity + at;
-        l.compress_int_into(x, keep, &mut self.ints[at..]);
+    pub fn keep<L: Lanes<Scalar = T>>(&mut self, l: L, at: usize, paths: &Paths<L>, keep: L::Mask) {
+        let (reals, ints) = paths.numbers();
+        for (column, x) in self.reals.iter_mut().zip(reals) {
+            l.compress_into(x, keep, &mut column[at..]);
+        }
+        for (column, x) in self.ints.iter_mut().zip(ints) {
+            l.compress_int_into(x, keep, &mut column[at..]);
+        }
     }
 }
 
@@ -236,10 +210,4 @@ pub fn has<L: Lanes>(l: L, value: L::Int, bit: u32) -> L::Mask {
 #[inline(always)]
 pub fn bit_where<L: Lanes>(l: L, m: L::Mask, bit: u32) -> L::Int {
     l.select_int(m, l.int(bit), l.int(0))
-}
-
-/// Whether any lane is true.
-#[inline(always)]
-pub fn any<M: Mask>(m: M) -> bool {
-    m.any()
 }

@@ -1,9 +1,9 @@
-//! One path again, with every vertex written down.
+//! A path that is traced again, every vertex of it written down.
 
 use glam::DVec3;
 
 /// What happened where a path met a surface, or left the scene.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Vertex {
     /// Segments traced before this one.
     pub depth: u32,
@@ -13,7 +13,7 @@ pub struct Vertex {
     pub direction: DVec3,
     /// Its length, scene units; infinite where nothing was met.
     pub distance: f64,
-    /// The object that was met.
+    /// Index of the object that was met.
     pub object: Option<u32>,
     /// Where, scene units about the camera.
     pub point: DVec3,
@@ -27,7 +27,7 @@ pub struct Vertex {
     pub emission_weight: Option<f64>,
     /// Throughput at each wavelength on arrival.
     pub throughput: Vec<f64>,
-    /// The light that was sampled.
+    /// The light that was sampled, if one was.
     pub light: Option<LightVertex>,
     /// Where the path goes on, unless it ended.
     pub scattered: Option<ScatteredVertex>,
@@ -66,9 +66,8 @@ pub struct ScatteredVertex {
 pub struct Replayed {
     /// Wavelengths, nm.
     pub wavelengths: Vec<f64>,
-    /// Which of them is the hero.
+    /// Index of the hero among them.
     pub hero: usize,
-    /// The vertices in order.
     pub vertices: Vec<Vertex>,
     /// What the sample adds to the picture: X, Y, Z.
     pub tristimulus: [f64; 3],

@@ -1,39 +1,31 @@
 //! How a packet of paths goes on from the surfaces it has met.
 
 use super::bounce::Step;
+use super::chunk::Workspace;
 use super::direct::Lit;
-use super::pool::{Carried, WIDEST, any, array, bit_where, each, flags, has};
-use super::surface::{Surfaces, for_each_distinct};
+use super::pool::{Carried, WIDEST, array, bit_where, each, flags, has};
+use super::surface::{Distinct, Surfaces};
 use crate::material::diffuse::reflected;
 use crate::material::{
-    Event, Interface, Material, MaterialKind, MaterialKinds, Medium, NUMBERS, Transport, Variates,
-    Wavelengths, each_material,
+    Event, Interface, Material, MaterialKind, Medium, NUMBERS, Transport, Variates, Wavelengths,
+    each_material,
 };
 use crate::math::lanes::{Int, Lanes, Mask, Scalar};
 use crate::math::vec3::Vec3;
 use crate::sample::Slot;
 
-/// A packet of surfaces, as a path sees them that has come there.
+/// A packet of surfaces, seen from the side on which paths arrive.
 pub struct Meeting<'a, L: Lanes> {
-    /// The surfaces.
     pub surface: &'a Surfaces<L>,
-    /// Unit directions of the rays that have come there.
-    pub direction: Vec3<L::Real>,
-    /// Unit normals on their side.
+    /// Unit directions towards where the paths come from.
+    pub wo: Vec3<L::Real>,
+    /// Unit normals on that side.
     pub normal: Vec3<L::Real>,
     /// Lanes that go on from here.
     pub going: L::Mask,
-    /// The materials that the loop has.
-    pub kinds: MaterialKinds,
 }
 
 impl<L: Lanes> Meeting<'_, L> {
-    /// Unit directions towards where the paths come from.
-    #[inline(always)]
-    pub fn wo(&self) -> Vec3<L::Real> {
-        -self.direction
-    }
-
     /// Lanes whose surfaces are of a material.
     #[inline(always)]
     pub fn of(&self, l: L, kind: MaterialKind) -> L::Mask {
@@ -50,23 +42,22 @@ impl<L: Lanes> Meeting<'_, L> {
 
 /// What a material is asked about, and where its answers go.
 pub struct Question<'a, L: Lanes, const C: usize> {
-    /// The surfaces as it sees them.
     pub at: Interface<'a, L, C>,
     /// Throughputs and radiances.
     pub paths: &'a mut [Carried<L::Scalar, C>],
-    /// [`Step::values`].
+    /// [`Workspace::values`](super::chunk::Workspace).
     pub values: &'a mut [[L::Scalar; C]; WIDEST],
 }
 
-/// The rays that go on.
+/// The rays with which paths go on.
 pub struct Scattered<L: Lanes> {
     /// Unit directions.
     pub direction: Vec3<L::Real>,
     /// Their densities, sr⁻¹.
     pub pdf: L::Real,
-    /// They had no alternative.
+    /// The direction was the only one possible.
     pub specular: L::Mask,
-    /// They go into the objects.
+    /// The ray goes into the object.
     pub inward: L::Mask,
 }
 
@@ -97,26 +88,33 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     #[inline(always)]
     pub fn scatter(&mut self, l: L, meeting: &Meeting<'_, L>) -> Scattered<L> {
         let mut next = Scattered {
-            direction: meeting.direction,
+            direction: meeting.wo,
             pdf: l.real(0.0),
             specular: l.mask(true),
             inward: !meeting.surface.front,
         };
+        let kinds = self.model.needs.materials;
         let mut spread = l.mask(false);
-        each_material!(M, KIND => if M::SPREAD && meeting.kinds.contains(KIND) {
+        each_material!(M, KIND => if M::SPREAD && kinds.contains(KIND) {
             spread = spread | meeting.of(l, KIND);
         });
-        let mut direction = [l.real(0.0); 2];
-        let mut lit = None;
-        if any(spread) {
-            (direction, lit) = self.light(l, meeting, spread);
+        let (mut direction, mut lit) = ([l.real(0.0); 2], None);
+        if spread.any() {
+            let (sequence, id) = (&self.model.sequence, self.paths.id);
+            if self.model.lights.is_empty() {
+                direction = sequence.pair(l, id, Slot::Bsdf);
+            } else {
+                let [light, bsdf] = sequence.light_and_bsdf(l, id);
+                direction = bsdf;
+                lit = Some(self.direct(l, meeting, spread, light));
+            }
         }
-        each_material!(M, KIND => if (M::SPREAD || M::DELTA) && meeting.kinds.contains(KIND) {
+        each_material!(M, KIND => if (M::SPREAD || M::DELTA) && kinds.contains(KIND) {
             let own = meeting.of(l, KIND);
-            if any(own) {
+            if own.any() {
                 let event = if M::LAMBERTIAN {
                     self.reflect(l, own, meeting.surface.spectra[0], &lit);
-                    reflected(l, meeting.normal, meeting.wo(), direction)
+                    reflected(l, meeting.normal, meeting.wo, direction)
                 } else {
                     self.sample::<M>(l, meeting, (own, direction), &lit)
                 };
@@ -124,24 +122,6 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             }
         });
         next
-    }
-
-    /// Direct light, where there are lights to be sampled, and the numbers for the directions.
-    #[inline(always)]
-    fn light(
-        &mut self,
-        l: L,
-        meeting: &Meeting<'_, L>,
-        spread: L::Mask,
-    ) -> ([L::Real; 2], Option<Lit<L>>) {
-        let sequence = &self.model.sequence;
-        if self.model.lights.is_empty() {
-            let numbers = sequence.pair(l, self.id, Slot::Bsdf, self.depth);
-            return (numbers, None);
-        }
-        let slots = [Slot::Light, Slot::Bsdf];
-        let [light, direction] = sequence.two_pairs(l, self.id, slots, self.depth);
-        (direction, Some(self.direct(l, meeting, spread, light)))
     }
 
     /// Lambertian surfaces: multiplies the throughput by the albedo, which is bsdf · cos/pdf of the
@@ -152,7 +132,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let albedos = self.table_rows(l, albedo);
         let table = self.model.spectra.rows::<C>();
         let Some(lit) = lit else {
-            let paths = self.rows.paths.as_mut_slice();
+            let paths = self.workspace.rows.paths.as_mut_slice();
             for i in each(m.bits()) {
                 let albedo = &table[albedos[i % WIDEST] as usize];
                 paths[self.slots[i % WIDEST] as usize].weigh(albedo);
@@ -161,7 +141,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         };
         let emissions = self.table_rows(l, lit.spectrum);
         let weights = array(l, lit.weight);
-        let paths = self.rows.paths.as_mut_slice();
+        let paths = self.workspace.rows.paths.as_mut_slice();
         for i in each(m.bits()) {
             let slot = self.slots[i % WIDEST] as usize;
             // Copies: arrays that cannot overlap become vectors.
@@ -198,7 +178,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         }
         let choice = if M::CHOOSES {
             let sequence = &self.model.sequence;
-            sequence.single(l, self.id, Slot::Choice, self.depth)
+            sequence.single(l, self.paths.id, Slot::Choice)
         } else {
             l.real(0.0)
         };
@@ -207,14 +187,14 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let event = M::sample(
             l,
             &at,
-            meeting.wo(),
+            meeting.wo,
             Transport::Radiance,
             Variates { choice, direction },
             #[inline(always)]
             |i, weight| paths[slots[i] as usize].weigh(weight),
         );
         if M::REFRACTS {
-            self.flags = self.flags | bit_where(l, event.ends, flags::TERMINATED);
+            self.paths.flags = self.paths.flags | bit_where(l, event.ends, flags::TERMINATED);
         }
         event
     }
@@ -225,13 +205,14 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
         let emissions = self.table_rows(l, lit.spectrum);
         let weights = array(l, lit.weight);
         let table = self.model.spectra.rows::<C>();
+        let Workspace { rows, values, .. } = &mut *self.workspace;
         for i in each((own & lit.arrives).bits()) {
-            let path = &mut self.rows.paths[self.slots[i] as usize];
-            path.receive(weights[i], &self.values[i], &table[emissions[i] as usize]);
+            let path = &mut rows.paths[self.slots[i] as usize];
+            path.receive(weights[i], &values[i], &table[emissions[i] as usize]);
         }
     }
 
-    /// What a material is asked about.
+    /// What a material is asked about in the given lanes.
     #[inline(always)]
     pub fn question<M: Material>(
         &mut self,
@@ -241,7 +222,7 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     ) -> Question<'_, L, C> {
         let surface = meeting.surface;
         let [n, k] = surface.spectra;
-        let rows = &mut *self.rows;
+        let Workspace { rows, values, .. } = &mut *self.workspace;
         let mut at = Interface {
             lanes,
             geometric: meeting.normal,
@@ -258,33 +239,26 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
             numbers: [l.real(0.0); NUMBERS],
             wavelengths: Wavelengths {
                 bank: self.model.spectra.rows::<C>(),
-                row: self.row,
+                row: self.paths.row,
                 slots: &self.slots,
                 hero: &rows.hero,
                 fraction: &rows.fraction,
-                ended: has(l, self.flags, flags::TERMINATED),
+                ended: has(l, self.paths.flags, flags::TERMINATED),
             },
-            #[cfg(feature = "planted")]
             planted: self.model.planted,
         };
         if M::NUMBERED {
-            for_each_distinct(
-                l,
-                surface.object,
-                lanes,
-                #[inline(always)]
-                |k, here| {
-                    let own = &self.model.appearances[k as usize].surface.numbers;
-                    for (number, own) in at.numbers.iter_mut().zip(own) {
-                        *number = l.select(here, l.splat(*own), *number);
-                    }
-                },
-            );
+            for (k, here) in Distinct::new(l, surface.object, lanes) {
+                let own = &self.model.appearances[k as usize].surface.numbers;
+                for (number, own) in at.numbers.iter_mut().zip(own) {
+                    *number = l.select(here, l.splat(*own), *number);
+                }
+            }
         }
         Question {
             at,
             paths: &mut rows.paths,
-            values: self.values,
+            values,
         }
     }
 }

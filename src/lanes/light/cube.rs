@@ -1,12 +1,13 @@
-//! Lights in the shape of a cube under any affine map.
+//! Parallelepipeds: cubes under any affine map.
 
 use glam::DVec3;
 
-use super::{Towards, area_pdf, by_area, vector};
+use super::{Emitting, Light, Plane, Towards, area_pdf, by_area, signed, vector};
 use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::vec3::Vec3;
+use crate::shape::Emitter;
 
-/// Six parallelograms; a point is chosen by area on those that face the receiver.
+/// Any parallelepiped, as six parallelograms; a point is chosen by area on those that face the receiver.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CubeLight<T> {
     faces: [Face<T>; 6],
@@ -17,9 +18,7 @@ pub struct CubeLight<T> {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Face<T> {
-    centre: [T; 3],
-    half: [[T; 3]; 2],
-    normal: [T; 3],
+    plane: Plane<T>,
     area: T,
 }
 
@@ -36,9 +35,7 @@ impl<T: Scalar> CubeLight<T> {
             let sign = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
             let (a, b) = (half[(axis + 1) % 3], half[(axis + 2) % 3]);
             Face {
-                centre: (centre + sign * half[axis]).to_array().map(T::from_f64),
-                half: [a, b].map(|h| h.to_array().map(T::from_f64)),
-                normal: (sign * normals[axis]).to_array().map(T::from_f64),
+                plane: Plane::new(centre + sign * half[axis], [a, b], sign * normals[axis]),
                 area: T::from_f64(4.0 * a.cross(b).length()),
             }
         };
@@ -50,7 +47,7 @@ impl<T: Scalar> CubeLight<T> {
         };
         Self {
             margin: T::from_f64(margin),
-            faces: [face(0), face(1), face(2), face(3), face(4), face(5)],
+            faces: std::array::from_fn(face),
             emits,
         }
     }
@@ -64,7 +61,7 @@ impl<T: Scalar> CubeLight<T> {
         let mut heights = [zero; 6];
         let mut outside = l.mask(false);
         for (height, face) in heights.iter_mut().zip(&self.faces) {
-            *height = (p - vector(l, &face.centre)).dot(vector(l, &face.normal));
+            *height = (p - vector(l, &face.plane.centre)).dot(face.plane.normal(l));
             outside = outside | height.gt(margin);
         }
         let mut areas = [zero; 6];
@@ -78,79 +75,83 @@ impl<T: Scalar> CubeLight<T> {
         }
         (areas, total)
     }
+}
 
-    /// A direction from p.
+impl<T: Scalar> Light<T> for CubeLight<T> {
+    const STRATEGY: &'static str = "by the area of its visible faces";
+
+    fn of_shape(shape: &Emitting<'_>) -> Option<(Self, f64)> {
+        if shape.form != Emitter::Cube {
+            return None;
+        }
+        let half @ [a, b, c] = shape.to_world.columns();
+        let normals = [0, 1, 2].map(|axis| shape.normal(axis));
+        let light = Self::new(shape.to_world.translation(), half, normals, shape.emits);
+        let area = 8.0 * (a.cross(b).length() + b.cross(c).length() + c.cross(a).length());
+        Some((light, area))
+    }
+
     #[inline(never)]
-    pub fn sample<L: Lanes<Scalar = T>>(
+    fn sample<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         p: Vec3<L::Real>,
         [u, v]: [L::Real; 2],
     ) -> Towards<L> {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let (areas, total) = self.visible(l, p);
-                let zero = l.real(0.0);
-                let (one, two) = (l.real(1.0), l.real(2.0));
-                let target = u * total;
-                let mut below = zero;
-                let mut to = Vec3::new(zero, zero, one);
-                let mut normal = to;
-                let mut height = zero;
-                for (face, area) in self.faces.iter().zip(areas) {
-                    // The last face with area whose share begins at or below the target wins.
-                    let here = target.ge(below) & area.gt(zero);
-                    let share = (target - below) / area;
-                    let x = two.mul_add(share.max(zero).min(one), -one);
-                    let y = two.mul_add(v, -one);
-                    let to_face = vector(l, &face.centre) - p;
-                    let face_normal = vector(l, &face.normal);
-                    let point = to_face
-                        .along(vector(l, &face.half[0]), x)
-                        .along(vector(l, &face.half[1]), y);
-                    to = Vec3::select(l, here, point, to);
-                    normal = Vec3::select(l, here, face_normal, normal);
-                    height = l.select(here, to_face.dot(face_normal), height);
-                    below = below + area;
-                }
-                let mut towards = by_area(l, to, normal, height, one / total, [true, true]);
-                towards.valid = towards.valid & total.gt(zero);
-                towards
-            },
-        )
+        l.vectorize(inlined!(|| {
+            let (areas, total) = self.visible(l, p);
+            let (zero, one) = (l.real(0.0), l.real(1.0));
+            let target = u * total;
+            let mut below = zero;
+            let mut to = Vec3::new(zero, zero, one);
+            let mut normal = to;
+            let mut height = zero;
+            for (face, area) in self.faces.iter().zip(areas) {
+                // The last face with area whose share begins at or below the target wins.
+                let here = target.ge(below) & area.gt(zero);
+                let share = (target - below) / area;
+                let x = signed(l, share.max(zero).min(one));
+                let to_face = face.plane.towards_centre(l, p);
+                let face_normal = face.plane.normal(l);
+                let point = face.plane.towards(l, to_face, [x, signed(l, v)]);
+                to = Vec3::select(l, here, point, to);
+                normal = Vec3::select(l, here, face_normal, normal);
+                height = l.select(here, to_face.dot(face_normal), height);
+                below = below + area;
+            }
+            let mut towards = by_area(l, to, normal, height, one / total, [true, true]);
+            towards.valid = towards.valid & total.gt(zero);
+            towards
+        }))
     }
 
-    /// Density of [`Self::sample`]; 0 for faces that it leaves to scattered rays.
+    /// 0 for faces that sampling leaves to scattered rays.
     #[inline(never)]
-    pub fn pdf<L: Lanes<Scalar = T>>(
+    fn pdf<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         p: Vec3<L::Real>,
         direction: Vec3<L::Real>,
         normal: Vec3<L::Real>,
     ) -> L::Real {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let (areas, total) = self.visible(l, p);
-                // The face that was met is the one whose normal is the hit's, up to rounding.
-                let zero = l.real(0.0);
-                let (mut likeness, mut height, mut cosine) = (-l.real(2.0), zero, zero);
-                let mut lit = zero;
-                for (face, area) in self.faces.iter().zip(areas) {
-                    let face_normal = vector(l, &face.normal);
-                    let like = face_normal.dot(normal);
-                    let here = like.gt(likeness);
-                    let to_face = vector(l, &face.centre) - p;
-                    likeness = l.select(here, like, likeness);
-                    height = l.select(here, to_face.dot(face_normal), height);
-                    cosine = l.select(here, direction.dot(face_normal), cosine);
-                    lit = l.select(here, area, lit);
-                }
-                let pdf = area_pdf(cosine, height, l.real(1.0) / total);
-                l.select(lit.gt(zero), pdf, zero)
-            },
-        )
+        l.vectorize(inlined!(|| {
+            let (areas, total) = self.visible(l, p);
+            // The face that was met is the one whose normal is the hit's, up to rounding.
+            let zero = l.real(0.0);
+            let (mut likeness, mut height, mut cosine) = (-l.real(2.0), zero, zero);
+            let mut lit = zero;
+            for (face, area) in self.faces.iter().zip(areas) {
+                let face_normal = face.plane.normal(l);
+                let like = face_normal.dot(normal);
+                let here = like.gt(likeness);
+                let to_face = face.plane.towards_centre(l, p);
+                likeness = l.select(here, like, likeness);
+                height = l.select(here, to_face.dot(face_normal), height);
+                cosine = l.select(here, direction.dot(face_normal), cosine);
+                lit = l.select(here, area, lit);
+            }
+            let pdf = area_pdf(cosine, height, l.real(1.0) / total);
+            l.select(lit.gt(zero), pdf, zero)
+        }))
     }
 }

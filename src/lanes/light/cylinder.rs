@@ -1,16 +1,19 @@
-//! Lights in the shape of a right circular cylinder with caps.
+//! Right circular cylinders with caps.
+
+use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{Towards, combined, products, vector};
+use super::{Emitting, Light, Towards, combined, products, scalars, signed, vector};
 use crate::math::functions::sin_cos_turns;
 use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::vec3::Vec3;
 use crate::sample::warp::square_to_disk;
+use crate::shape::Emitter;
 
-/// A part that faces the receiver is chosen by its size; on caps and from inside points are chosen
-/// by area, on the side from outside by height and by how far their line of sight passes the axis,
-/// so that the density is bounded at the outline.
+/// A right circular cylinder. A part that faces the receiver is chosen by its size; on caps and from
+/// inside points are chosen by area, on the side from outside by height and by how far their line of
+/// sight passes the axis, so that the density is bounded at the outline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CylinderLight<T> {
     centre: [T; 3],
@@ -34,7 +37,7 @@ struct View<L: Lanes> {
     total: L::Real,
 }
 
-/// A part, as masks: side, and of the caps that towards +z.
+/// A part of the surface: the side, else the cap towards +z (`top`) or the one towards −z.
 pub(super) struct Part<L: Lanes> {
     side: L::Mask,
     top: L::Mask,
@@ -65,9 +68,8 @@ impl<T: Scalar> CylinderLight<T> {
         let off = if emits[1] { off } else { 0.0 };
         let inside = [radius * radius * (1.0 + 2.0 * off / radius), height + off];
         Self {
-            centre: centre.to_array().map(T::from_f64),
-            axes: [base[0] / radius, base[1] / radius, half_height / height]
-                .map(|axis| axis.to_array().map(T::from_f64)),
+            centre: scalars(centre),
+            axes: [base[0] / radius, base[1] / radius, half_height / height].map(scalars),
             radius: T::from_f64(radius),
             half_height: T::from_f64(height),
             inside: inside.map(T::from_f64),
@@ -90,9 +92,9 @@ impl<T: Scalar> CylinderLight<T> {
         let seen = l.mask(self.emits[0]) & outside;
         let within = l.mask(self.emits[1]) & !outside;
         let breadth = radius * height * l.real(4.0);
-        let cap = radius * radius * l.real(std::f64::consts::PI);
+        let cap = radius * radius * l.real(PI);
         let side = l.select(seen & away.gt(radius), breadth, zero);
-        let side = l.select(within, breadth * l.real(std::f64::consts::PI), side);
+        let side = l.select(within, breadth * l.real(PI), side);
         let top = l.select(within | (seen & q.z.gt(height)), cap, zero);
         let bottom = l.select(within | (seen & q.z.lt(-height)), cap, zero);
         View {
@@ -143,17 +145,6 @@ impl<T: Scalar> CylinderLight<T> {
         l.select(part.side, on_side, on_cap)
     }
 
-    /// A direction from p.
-    #[inline(never)]
-    pub fn sample<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        p: Vec3<L::Real>,
-        numbers: [L::Real; 2],
-    ) -> Towards<L> {
-        self.sample_part(l, p, numbers).0
-    }
-
     /// A direction from p and the part it leads to.
     #[inline(never)]
     pub(super) fn sample_part<L: Lanes<Scalar = T>>(
@@ -162,58 +153,55 @@ impl<T: Scalar> CylinderLight<T> {
         p: Vec3<L::Real>,
         [u, v]: [L::Real; 2],
     ) -> (Towards<L>, Part<L>) {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let (zero, one, two) = (l.real(0.0), l.real(1.0), l.real(2.0));
-                let (radius, height) = (l.splat(self.radius), l.splat(self.half_height));
-                let view = self.view(l, p);
-                let [side, top, bottom] = view.sizes;
-                let target = u * view.total;
-                let part = Part {
-                    side: target.lt(side),
-                    top: !target.lt(side) & (target - side).lt(top),
-                };
-                let below = l.select(part.side, zero, l.select(part.top, side, side + top));
-                let size = l.select(part.side, side, l.select(part.top, top, bottom));
-                let share = ((target - below) / size).max(zero).min(one);
-                // The side from outside: past the axis at the distance `moment`.
-                let moment = two.mul_add(share, -one) * radius;
-                let away = view.away;
-                let sine = moment / away;
-                let cosine = (-sine).mul_add(sine, one).max(zero).sqrt();
-                let half = (-moment).mul_add(moment, radius * radius).max(zero).sqrt();
-                let near = (away - radius) * (away + radius) / away.mul_add(cosine, half);
-                let (x, y) = (-view.q.x / away, -view.q.y / away);
-                let past = Vec3::new(
-                    x.mul_add(cosine, -(y * sine)) * near,
-                    y.mul_add(cosine, x * sine) * near,
-                    zero,
-                );
-                // From inside by angle; caps.
-                let (s, c) = sin_cos_turns(l, share);
-                let (cap_x, cap_y) = square_to_disk(l, share, v);
-                let across = Vec3::new(
-                    l.select(part.side, c, cap_x).mul_add(radius, -view.q.x),
-                    l.select(part.side, s, cap_y).mul_add(radius, -view.q.y),
-                    zero,
-                );
-                let to = Vec3::select(l, part.side & view.outside, past, across);
-                let level = l.select(part.top, height, -height);
-                let level = l.select(part.side, two.mul_add(v, -one) * height, level);
-                let to = Vec3::new(to.x, to.y, level - view.q.z);
-                let distance = to.length_squared().sqrt();
-                let to = to.scale(one / distance);
-                let direction = combined(l, &self.axes, to);
-                let towards = Towards {
-                    direction,
-                    distance,
-                    pdf: self.density(l, &view, direction, &part),
-                    valid: view.total.gt(zero),
-                };
-                (towards, part)
-            },
-        )
+        l.vectorize(inlined!(|| {
+            let (zero, one) = (l.real(0.0), l.real(1.0));
+            let (radius, height) = (l.splat(self.radius), l.splat(self.half_height));
+            let view = self.view(l, p);
+            let [side, top, bottom] = view.sizes;
+            let target = u * view.total;
+            let part = Part {
+                side: target.lt(side),
+                top: !target.lt(side) & (target - side).lt(top),
+            };
+            let below = l.select(part.side, zero, l.select(part.top, side, side + top));
+            let size = l.select(part.side, side, l.select(part.top, top, bottom));
+            let share = ((target - below) / size).max(zero).min(one);
+            // The side from outside: past the axis at the distance `moment`.
+            let moment = signed(l, share) * radius;
+            let away = view.away;
+            let sine = moment / away;
+            let cosine = (-sine).mul_add(sine, one).max(zero).sqrt();
+            let half = (-moment).mul_add(moment, radius * radius).max(zero).sqrt();
+            let near = (away - radius) * (away + radius) / away.mul_add(cosine, half);
+            let (x, y) = (-view.q.x / away, -view.q.y / away);
+            let past = Vec3::new(
+                x.mul_add(cosine, -(y * sine)) * near,
+                y.mul_add(cosine, x * sine) * near,
+                zero,
+            );
+            // From inside by angle; caps.
+            let (s, c) = sin_cos_turns(l, share);
+            let (cap_x, cap_y) = square_to_disk(l, share, v);
+            let across = Vec3::new(
+                l.select(part.side, c, cap_x).mul_add(radius, -view.q.x),
+                l.select(part.side, s, cap_y).mul_add(radius, -view.q.y),
+                zero,
+            );
+            let to = Vec3::select(l, part.side & view.outside, past, across);
+            let level = l.select(part.top, height, -height);
+            let level = l.select(part.side, signed(l, v) * height, level);
+            let to = Vec3::new(to.x, to.y, level - view.q.z);
+            let distance = to.length_squared().sqrt();
+            let to = to.scale(one / distance);
+            let direction = combined(l, &self.axes, to);
+            let towards = Towards {
+                direction,
+                distance,
+                pdf: self.density(l, &view, direction, &part),
+                valid: view.total.gt(zero),
+            };
+            (towards, part)
+        }))
     }
 
     /// Density of [`Self::sample_part`].
@@ -227,27 +215,41 @@ impl<T: Scalar> CylinderLight<T> {
     ) -> L::Real {
         self.density(l, &self.view(l, p), direction, part)
     }
+}
 
-    /// Density of [`Self::sample`].
+impl<T: Scalar> Light<T> for CylinderLight<T> {
+    const STRATEGY: &'static str = "by the size of its visible parts";
+
+    fn of_shape(shape: &Emitting<'_>) -> Option<(Self, f64)> {
+        (shape.form == Emitter::Cylinder && shape.to_world.is_right_circular()).then(|| {
+            let [a, b, c] = shape.to_world.columns();
+            let (radius, height) = (a.length(), 2.0 * c.length());
+            let light = Self::new(shape.to_world.translation(), [a, b], c, shape.emits);
+            (light, 2.0 * PI * radius * (radius + height))
+        })
+    }
+
     #[inline(never)]
-    pub fn pdf<L: Lanes<Scalar = T>>(
+    fn sample<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>, u: [L::Real; 2]) -> Towards<L> {
+        self.sample_part(l, p, u).0
+    }
+
+    #[inline(never)]
+    fn pdf<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         p: Vec3<L::Real>,
         direction: Vec3<L::Real>,
         normal: Vec3<L::Real>,
     ) -> L::Real {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                // Normals are along the axis or at right angles to it, up to rounding.
-                let along = normal.dot(vector(l, &self.axes[2]));
-                let part = Part {
-                    side: along.abs().lt(l.real(0.5)),
-                    top: along.gt(l.real(0.0)),
-                };
-                self.density(l, &self.view(l, p), direction, &part)
-            },
-        )
+        l.vectorize(inlined!(|| {
+            // Normals are along the axis or at right angles to it, up to rounding.
+            let along = normal.dot(vector(l, &self.axes[2]));
+            let part = Part {
+                side: along.abs().lt(l.real(0.5)),
+                top: along.gt(l.real(0.0)),
+            };
+            self.density(l, &self.view(l, p), direction, &part)
+        }))
     }
 }

@@ -5,9 +5,12 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DMat3, DVec3};
 
-use super::{CylinderLight, SphereLight, Towards, combined, products, vector};
+use super::{
+    CylinderLight, Emitting, Light, SphereLight, Towards, combined, products, scalars, vector,
+};
 use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::vec3::Vec3;
+use crate::shape::Emitter;
 
 /// Points of the lattice that areas are summed over.
 const POINTS: usize = 256;
@@ -35,28 +38,8 @@ enum Canonical<T> {
     Cylinder(CylinderLight<T>),
 }
 
-/// A sample carried over, but for the canonical density.
-struct Mapped<L: Lanes> {
-    /// The sample, with the factor of its density.
-    towards: Towards<L>,
-    /// The canonical direction of its own rounded direction, of which both strategies are to see the
-    /// density.
-    back: Vec3<L::Real>,
-}
-
-impl<L: Lanes> Mapped<L> {
-    /// The sample with the canonical density of [`Self::back`].
-    #[inline(always)]
-    fn with(&self, pdf: L::Real) -> Towards<L> {
-        Towards {
-            pdf: pdf * self.towards.pdf,
-            ..self.towards
-        }
-    }
-}
-
 impl<T: Scalar> MappedLight<T> {
-    /// The image of the sphere of radius 1.
+    /// The image of the sphere of radius 1 under the map with this linear part and centre.
     pub fn ellipsoid(centre: DVec3, linear: DMat3, emits: [bool; 2]) -> Self {
         let off = Self::off(centre, linear);
         let sphere = SphereLight::with_walls(DVec3::ZERO, 1.0, off, emits);
@@ -72,7 +55,6 @@ impl<T: Scalar> MappedLight<T> {
     }
 
     fn new(canonical: Canonical<T>, centre: DVec3, linear: DMat3) -> Self {
-        let scalars = |v: DVec3| v.to_array().map(T::from_f64);
         let inverse = linear.inverse().transpose();
         Self {
             canonical,
@@ -113,87 +95,102 @@ impl<T: Scalar> MappedLight<T> {
         (back.scale(l.real(1.0) / length), factor)
     }
 
-    /// A direction from p.
-    #[inline(never)]
-    pub fn sample<L: Lanes<Scalar = T>>(
+    /// What the map makes of a sample, with the factor of its density, and the canonical direction of
+    /// its own rounded direction, of which both strategies are to see the density.
+    #[inline(always)]
+    fn mapped<L: Lanes<Scalar = T>>(
         &self,
         l: L,
-        p: Vec3<L::Real>,
-        numbers: [L::Real; 2],
-    ) -> Towards<L> {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let q = self.preimage(l, p);
-                match &self.canonical {
-                    Canonical::Sphere(sphere) => {
-                        let mapped = self.mapped(l, &sphere.sample(l, q, numbers));
-                        mapped.with(sphere.pdf(l, q, mapped.back))
-                    }
-                    Canonical::Cylinder(cylinder) => {
-                        let (towards, part) = cylinder.sample_part(l, q, numbers);
-                        let mapped = self.mapped(l, &towards);
-                        mapped.with(cylinder.pdf_of_part(l, q, mapped.back, &part))
-                    }
-                }
-            },
-        )
-    }
-
-    /// What the map makes of a sample.
-    #[inline(always)]
-    fn mapped<L: Lanes<Scalar = T>>(&self, l: L, towards: &Towards<L>) -> Mapped<L> {
+        towards: &Towards<L>,
+    ) -> (Towards<L>, Vec3<L::Real>) {
         let along = combined(l, &self.linear, towards.direction);
         let stretch = along.length_squared().sqrt();
         let direction = along.scale(l.real(1.0) / stretch);
         let (back, factor) = self.canonical_direction(l, direction);
-        Mapped {
-            towards: Towards {
-                direction,
-                distance: towards.distance * stretch,
-                pdf: factor,
-                valid: towards.valid,
-            },
-            back,
+        let towards = Towards {
+            direction,
+            distance: towards.distance * stretch,
+            pdf: factor,
+            valid: towards.valid,
+        };
+        (towards, back)
+    }
+}
+
+impl<T: Scalar> Light<T> for MappedLight<T> {
+    const STRATEGY: &'static str = "as the round shape that it is an image of";
+
+    fn of_shape(shape: &Emitting<'_>) -> Option<(Self, f64)> {
+        let (centre, linear) = (shape.to_world.translation(), shape.linear());
+        match shape.form {
+            Emitter::Sphere => Some((
+                Self::ellipsoid(centre, linear, shape.emits),
+                ellipsoid_area(linear),
+            )),
+            Emitter::Cylinder => Some((
+                Self::cylinder(centre, linear, shape.emits),
+                cylinder_area(linear),
+            )),
+            Emitter::Disk | Emitter::Rectangle | Emitter::Cube | Emitter::Unsampled => None,
         }
     }
 
-    /// Density of [`Self::sample`].
     #[inline(never)]
-    pub fn pdf<L: Lanes<Scalar = T>>(
+    fn sample<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>, u: [L::Real; 2]) -> Towards<L> {
+        l.vectorize(inlined!(|| {
+            let q = self.preimage(l, p);
+            match &self.canonical {
+                Canonical::Sphere(sphere) => {
+                    let (towards, back) = self.mapped(l, &sphere.sample(l, q, u));
+                    Towards {
+                        pdf: sphere.density(l, q, back) * towards.pdf,
+                        ..towards
+                    }
+                }
+                Canonical::Cylinder(cylinder) => {
+                    let (towards, part) = cylinder.sample_part(l, q, u);
+                    let (towards, back) = self.mapped(l, &towards);
+                    Towards {
+                        pdf: cylinder.pdf_of_part(l, q, back, &part) * towards.pdf,
+                        ..towards
+                    }
+                }
+            }
+        }))
+    }
+
+    #[inline(never)]
+    fn pdf<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         p: Vec3<L::Real>,
         direction: Vec3<L::Real>,
         normal: Vec3<L::Real>,
     ) -> L::Real {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let q = self.preimage(l, p);
-                let (back, factor) = self.canonical_direction(l, direction);
-                let pdf = match &self.canonical {
-                    Canonical::Sphere(sphere) => sphere.pdf(l, q, back),
-                    Canonical::Cylinder(cylinder) => {
-                        // Normals are mapped by the inverse's transpose, so back by the transpose.
-                        let normal = products(l, &self.linear, normal);
-                        cylinder.pdf(l, q, back, normal.normalized(l))
-                    }
-                };
-                pdf * factor
-            },
-        )
+        l.vectorize(inlined!(|| {
+            let q = self.preimage(l, p);
+            let (back, factor) = self.canonical_direction(l, direction);
+            let pdf = match &self.canonical {
+                Canonical::Sphere(sphere) => sphere.density(l, q, back),
+                Canonical::Cylinder(cylinder) => {
+                    // Normals are mapped by the inverse's transpose, so back by the transpose.
+                    let normal = products(l, &self.linear, normal);
+                    cylinder.pdf(l, q, back, normal.normalized(l))
+                }
+            };
+            pdf * factor
+        }))
     }
 }
 
 /// Area of the image of the sphere of radius 1 under a linear map, to a thousandth or so: enough for
 /// choosing among lights.
-pub fn ellipsoid_area(linear: DMat3) -> f64 {
+fn ellipsoid_area(linear: DMat3) -> f64 {
     4.0 * PI * mean_stretch(linear, &spiral())
 }
 
 /// The same of the closed cylinder of radius 1 from z = −1 to 1.
-pub fn cylinder_area(linear: DMat3) -> f64 {
+fn cylinder_area(linear: DMat3) -> f64 {
     let around = spiral().map(|n| n.with_z(0.0).normalize());
     4.0 * PI * mean_stretch(linear, &around) + 2.0 * PI * mean_stretch(linear, &[DVec3::Z])
 }

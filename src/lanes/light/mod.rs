@@ -2,8 +2,11 @@
 
 mod cube;
 mod cylinder;
-mod emitting;
+mod directional;
+mod kind;
 mod mapped;
+mod planar;
+mod point;
 mod rectangle;
 mod small;
 mod sphere;
@@ -12,12 +15,14 @@ use glam::DVec3;
 
 use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::vec3::Vec3;
-use crate::sample::warp::square_to_disk;
 
 pub use cube::CubeLight;
 pub use cylinder::CylinderLight;
-pub use emitting::of_shape;
-pub use mapped::{MappedLight, cylinder_area, ellipsoid_area};
+pub use directional::DirectionalLight;
+pub use kind::{Emitting, Light, LightShape, Place, Source, SourceKind, WithoutSurface};
+pub use mapped::MappedLight;
+pub use planar::PlanarLight;
+pub use point::PointLight;
 pub use rectangle::RectangleLight;
 pub use small::SmallLights;
 pub use sphere::{SphereLight, SphereTable};
@@ -39,7 +44,6 @@ pub struct Towards<L: Lanes> {
 /// A light as lanes use it.
 #[derive(Debug, Clone)]
 pub struct LaneLight<T> {
-    /// Where its points are.
     pub shape: LightShape<T>,
     /// Probability of choosing it.
     pub probability: T,
@@ -51,177 +55,52 @@ pub struct LaneLight<T> {
     pub object: u32,
 }
 
-/// The lights that can be sampled, by shape.
-#[derive(Debug, Clone)]
-pub enum LightShape<T> {
-    /// Right-angled rectangle: solid angle near, area far.
-    Rectangle(RectangleLight<T>),
-    /// Any ellipse, by area.
-    Disk(PlanarLight<T>),
-    /// Any parallelogram, by area.
-    Parallelogram(PlanarLight<T>),
-    /// A sphere: its cone from outside, by area from inside.
-    Sphere(SphereLight<T>),
-    /// Any parallelepiped: its visible faces by area.
-    Cube(CubeLight<T>),
-    /// A right circular cylinder: its visible parts.
-    Cylinder(CylinderLight<T>),
-    /// An ellipsoid, or a cylinder that is not right circular: as the canonical shape, mapped.
-    Mapped(MappedLight<T>),
-    Point([T; 3]),
-    /// Parallel light: the direction towards it.
-    Directional([T; 3]),
-}
-
-impl<T: Scalar> LightShape<T> {
-    /// Whether scattered rays can hit the light, so that the two strategies are to be weighted.
-    pub fn has_extent(&self) -> bool {
-        !matches!(self, Self::Point(_) | Self::Directional(_))
-    }
-
-    /// Whether it cannot light itself, whatever rounding makes of a point on it: by a hair behind
-    /// the plane, a rectangle would fill half of all directions.
-    pub fn is_flat(&self) -> bool {
-        matches!(
-            self,
-            Self::Rectangle(_) | Self::Disk(_) | Self::Parallelogram(_)
-        )
-    }
-
-    /// Samples a direction from points p.
-    #[inline(always)]
-    pub fn sample<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        p: Vec3<L::Real>,
-        [u, v]: [L::Real; 2],
-    ) -> Towards<L> {
-        match self {
-            Self::Rectangle(light) => light.sample(l, p, [u, v]),
-            Self::Disk(light) => {
-                let (x, y) = square_to_disk(l, u, v);
-                light.towards(l, p, x, y)
-            }
-            Self::Parallelogram(light) => {
-                let two = l.real(2.0);
-                let one = l.real(1.0);
-                light.towards(l, p, two.mul_add(u, -one), two.mul_add(v, -one))
-            }
-            Self::Sphere(light) => light.sample(l, p, [u, v]),
-            Self::Cube(light) => light.sample(l, p, [u, v]),
-            Self::Cylinder(light) => light.sample(l, p, [u, v]),
-            Self::Mapped(light) => light.sample(l, p, [u, v]),
-            Self::Point(at) => {
-                let to = vector(l, at) - p;
-                let squared = to.length_squared();
-                let distance = squared.sqrt();
-                Towards {
-                    direction: to.scale(l.real(1.0) / distance),
-                    distance,
-                    pdf: squared,
-                    valid: squared.gt(l.real(0.0)),
-                }
-            }
-            Self::Directional(direction) => Towards {
-                direction: vector(l, direction),
-                distance: l.real(f64::INFINITY),
-                pdf: l.real(1.0),
-                valid: l.mask(true),
-            },
-        }
-    }
-
-    /// Density in solid angle with which [`Self::sample`] from p would have chosen the unit
-    /// direction `direction`, which meets the light where its normal is `normal`.
-    ///
-    /// It is a function of p and the direction alone, the same for both sampling strategies, bit
-    /// for bit: the weights of a direction then sum to 1 however grazing it is. (The hit's own
-    /// distance and normal would be as good, but rounded otherwise, and 1/cos enlarges that.) The
-    /// normal only tells the faces of a cube or cylinder apart.
-    #[inline(always)]
-    pub fn pdf<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        p: Vec3<L::Real>,
-        direction: Vec3<L::Real>,
-        normal: Vec3<L::Real>,
-    ) -> L::Real {
-        match self {
-            Self::Rectangle(light) => light.pdf(l, p, direction),
-            Self::Disk(light) | Self::Parallelogram(light) => light.pdf(l, p, direction),
-            Self::Sphere(light) => light.pdf(l, p, direction),
-            Self::Cube(light) => light.pdf(l, p, direction, normal),
-            Self::Cylinder(light) => light.pdf(l, p, direction, normal),
-            Self::Mapped(light) => light.pdf(l, p, direction, normal),
-            Self::Point(_) | Self::Directional(_) => l.real(0.0),
-        }
-    }
-}
-
-/// A parallelogram or ellipse: centre ± two half-axes.
+/// A plane with two axes, at right angles or not: centre + x · first + y · second.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlanarLight<T> {
+struct Plane<T> {
     centre: [T; 3],
-    half: [[T; 3]; 2],
+    axes: [[T; 3]; 2],
+    /// Unit vector outward, or of the front.
     normal: [T; 3],
-    inverse_area: T,
-    emits: [bool; 2],
 }
 
-impl<T: Scalar> PlanarLight<T> {
-    /// From its centre and half-axes; `shape_area` is the area of the canonical shape (4 or π),
-    /// `normal` the unit normal of the front.
-    pub fn new(
-        centre: DVec3,
-        half: [DVec3; 2],
-        normal: DVec3,
-        shape_area: f64,
-        emits: [bool; 2],
-    ) -> Self {
-        let area = half[0].cross(half[1]).length() * shape_area;
+impl<T: Scalar> Plane<T> {
+    fn new(centre: DVec3, axes: [DVec3; 2], normal: DVec3) -> Self {
         Self {
-            centre: centre.to_array().map(T::from_f64),
-            half: half.map(|h| h.to_array().map(T::from_f64)),
-            normal: normal.to_array().map(T::from_f64),
-            inverse_area: T::from_f64(1.0 / area),
-            emits,
+            centre: scalars(centre),
+            axes: axes.map(scalars),
+            normal: scalars(normal),
         }
     }
 
+    /// From p to the centre.
+    #[inline(always)]
+    fn towards_centre<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> Vec3<L::Real> {
+        vector(l, &self.centre) - p
+    }
+
+    /// To the point (x, y), from where the centre is `to_centre` away.
     #[inline(always)]
     fn towards<L: Lanes<Scalar = T>>(
         &self,
         l: L,
-        p: Vec3<L::Real>,
-        x: L::Real,
-        y: L::Real,
-    ) -> Towards<L> {
-        let to = (vector(l, &self.centre) - p)
-            .along(vector(l, &self.half[0]), x)
-            .along(vector(l, &self.half[1]), y);
-        let normal = vector(l, &self.normal);
-        let height = (vector(l, &self.centre) - p).dot(normal);
-        by_area(
-            l,
-            to,
-            normal,
-            height,
-            l.splat(self.inverse_area),
-            self.emits,
-        )
+        to_centre: Vec3<L::Real>,
+        [x, y]: [L::Real; 2],
+    ) -> Vec3<L::Real> {
+        let [first, second] = &self.axes;
+        to_centre
+            .along(vector(l, first), x)
+            .along(vector(l, second), y)
     }
 
     #[inline(always)]
-    fn pdf<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        p: Vec3<L::Real>,
-        direction: Vec3<L::Real>,
-    ) -> L::Real {
-        let normal = vector(l, &self.normal);
-        let height = (vector(l, &self.centre) - p).dot(normal);
-        area_pdf(direction.dot(normal), height, l.splat(self.inverse_area))
+    fn normal<L: Lanes<Scalar = T>>(&self, l: L) -> Vec3<L::Real> {
+        vector(l, &self.normal)
     }
+}
+
+fn scalars<T: Scalar>(v: DVec3) -> [T; 3] {
+    v.to_array().map(T::from_f64)
 }
 
 /// Three scalars as a lane vector.
@@ -249,6 +128,12 @@ fn combined<L: Lanes>(l: L, columns: &[[L::Scalar; 3]; 3], v: Vec3<L::Real>) -> 
         .scale(v.x)
         .along(vector(l, y), v.y)
         .along(vector(l, z), v.z)
+}
+
+/// A number in [0, 1) as one in [−1, 1).
+#[inline(always)]
+fn signed<L: Lanes>(l: L, u: L::Real) -> L::Real {
+    l.real(2.0).mul_add(u, -l.real(1.0))
 }
 
 /// Direction, distance and density for a point chosen uniformly on a plane area, `to` away from

@@ -2,10 +2,12 @@
 
 use glam::DVec3;
 
-use super::{Towards, area_pdf, by_area, vector};
+use super::{Emitting, Light, Plane, Towards, area_pdf, by_area, signed, vector};
+use crate::math::affine::perpendicular;
 use crate::math::functions::{atan2_turns, sin_cos_turns};
-use crate::math::lanes::{Lanes, Mask, Real, Scalar, inlined};
+use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::vec3::Vec3;
+use crate::shape::Emitter;
 
 /// A rectangle sampled uniformly in solid angle from near points and by area from far ones.
 ///
@@ -14,9 +16,8 @@ use crate::math::vec3::Vec3;
 /// would lose digits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RectangleLight<T> {
-    centre: [T; 3],
-    axes: [[T; 3]; 2],
-    normal: [T; 3],
+    /// With unit axes.
+    plane: Plane<T>,
     half: [T; 2],
     inverse_area: T,
     inverse_root_area: T,
@@ -42,9 +43,7 @@ impl<T: Scalar> RectangleLight<T> {
         let lengths = half.map(DVec3::length);
         let area = 4.0 * lengths[0] * lengths[1];
         Self {
-            centre: centre.to_array().map(T::from_f64),
-            axes: half.map(|h| h.normalize().to_array().map(T::from_f64)),
-            normal: normal.to_array().map(T::from_f64),
+            plane: Plane::new(centre, half.map(DVec3::normalize), normal),
             half: lengths.map(T::from_f64),
             inverse_area: T::from_f64(1.0 / area),
             inverse_root_area: T::from_f64(1.0 / area.sqrt()),
@@ -59,14 +58,12 @@ impl<T: Scalar> RectangleLight<T> {
     /// sine |z| r/(…), so its tangent needs one square root.
     #[inline(always)]
     fn seen<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>) -> Seen<L> {
-        let to = vector(l, &self.centre) - p;
+        let to = self.plane.towards_centre(l, p);
         let near = to.length_squared().lt(l.splat(self.near_squared));
-        let (cx, cy) = (
-            to.dot(vector(l, &self.axes[0])),
-            to.dot(vector(l, &self.axes[1])),
-        );
+        let [ax, ay] = &self.plane.axes;
+        let (cx, cy) = (to.dot(vector(l, ax)), to.dot(vector(l, ay)));
         // The parametrisation looks along −z.
-        let z = -to.dot(vector(l, &self.normal)).abs();
+        let z = -to.dot(self.plane.normal(l)).abs();
         let (hx, hy) = (l.splat(self.half[0]), l.splat(self.half[1]));
         let (x, y) = ([cx - hx, cx + hx], [cy - hy, cy + hy]);
         let mut seen = Seen {
@@ -83,22 +80,17 @@ impl<T: Scalar> RectangleLight<T> {
             let (x, y) = ([x[0] * unit, x[1] * unit], [y[0] * unit, y[1] * unit]);
             let (zz, depth) = (z * unit * (z * unit), -(z * unit));
             // cos and sin of a corner's angle, times a common factor.
-            let corner = inlined(
-                #[inline(always)]
-                |x: L::Real, y: L::Real| {
-                    let r = x.mul_add(x, y.mul_add(y, zz)).sqrt();
-                    (x * y, depth * r)
-                },
-            );
+            let corner = inlined!(|x: L::Real, y: L::Real| {
+                let r = x.mul_add(x, y.mul_add(y, zz)).sqrt();
+                (x * y, depth * r)
+            });
             // The angle of (c₀ + i s₀)(−c₁ + i s₁), a sum of two angles in [0, ½] turns.
-            let sum = inlined(
-                #[inline(always)]
-                |(c0, s0): (L::Real, L::Real), (c1, s1): (L::Real, L::Real)| {
-                    let cosine = -c0.mul_add(c1, s0 * s1);
-                    let turns = atan2_turns(l, c0.mul_add(s1, -(s0 * c1)), cosine);
-                    l.select(turns.lt(l.real(0.0)), turns + l.real(1.0), turns)
-                },
-            );
+            type Pair<L> = (<L as Lanes>::Real, <L as Lanes>::Real);
+            let sum = inlined!(|(c0, s0): Pair<L>, (c1, s1): Pair<L>| {
+                let cosine = -c0.mul_add(c1, s0 * s1);
+                let turns = atan2_turns(l, c0.mul_add(s1, -(s0 * c1)), cosine);
+                l.select(turns.lt(l.real(0.0)), turns + l.real(1.0), turns)
+            });
             seen.corners = sum(corner(x[0], y[1]), corner(x[0], y[0]));
             let others = sum(corner(x[1], y[0]), corner(x[1], y[1]));
             seen.turns = others - (l.real(1.0) - seen.corners);
@@ -110,62 +102,72 @@ impl<T: Scalar> RectangleLight<T> {
         seen
     }
 
-    /// A direction from p.
+    /// Density of [`Light::sample`].
     #[inline(never)]
-    pub fn sample<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        p: Vec3<L::Real>,
-        [u, v]: [L::Real; 2],
-    ) -> Towards<L> {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let seen = self.seen(l, p);
-                let [ax, ay] = [vector(l, &self.axes[0]), vector(l, &self.axes[1])];
-                let two = l.real(2.0);
-                let one = l.real(1.0);
-                let mut x = two.mul_add(u, -one) * l.splat(self.half[0]);
-                let mut y = two.mul_add(v, -one) * l.splat(self.half[1]);
-                let to_centre = vector(l, &self.centre) - p;
-                if seen.near.any() {
-                    let (sx, sy) = seen.point(l, u, v);
-                    // Back to coordinates about the centre.
-                    x = l.select(seen.near, sx - (seen.x[0] + seen.x[1]) * l.real(0.5), x);
-                    y = l.select(seen.near, sy - (seen.y[0] + seen.y[1]) * l.real(0.5), y);
-                }
-                let to = to_centre.along(ax, x).along(ay, y);
-                let mut towards = by_area(
-                    l,
-                    to,
-                    vector(l, &self.normal),
-                    seen.z,
-                    l.splat(self.inverse_area),
-                    self.emits,
-                );
-                towards.pdf = l.select(seen.near, seen.pdf(l), towards.pdf);
-                towards
-            },
-        )
-    }
-
-    /// Density of [`Self::sample`].
-    #[inline(never)]
-    pub fn pdf<L: Lanes<Scalar = T>>(
+    fn density<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         p: Vec3<L::Real>,
         direction: Vec3<L::Real>,
     ) -> L::Real {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let seen = self.seen(l, p);
-                let cosine = direction.dot(vector(l, &self.normal));
-                let area = area_pdf(cosine, seen.z, l.splat(self.inverse_area));
-                l.select(seen.near, seen.pdf(l), area)
-            },
-        )
+        l.vectorize(inlined!(|| {
+            let seen = self.seen(l, p);
+            let cosine = direction.dot(self.plane.normal(l));
+            let area = area_pdf(cosine, seen.z, l.splat(self.inverse_area));
+            l.select(seen.near, seen.pdf(l), area)
+        }))
+    }
+}
+
+impl<T: Scalar> Light<T> for RectangleLight<T> {
+    const STRATEGY: &'static str = "by solid angle near, by area far";
+    const FLAT: bool = true;
+
+    fn of_shape(shape: &Emitting<'_>) -> Option<(Self, f64)> {
+        let [a, b, _] = shape.to_world.columns();
+        let centre = shape.to_world.translation();
+        (shape.form == Emitter::Rectangle && perpendicular(a, b)).then(|| {
+            let light = Self::new(centre, [a, b], shape.normal(2), shape.emits);
+            (light, 4.0 * a.cross(b).length())
+        })
+    }
+
+    #[inline(never)]
+    fn sample<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        p: Vec3<L::Real>,
+        [u, v]: [L::Real; 2],
+    ) -> Towards<L> {
+        l.vectorize(inlined!(|| {
+            let seen = self.seen(l, p);
+            let mut x = signed(l, u) * l.splat(self.half[0]);
+            let mut y = signed(l, v) * l.splat(self.half[1]);
+            if seen.near.any() {
+                let (sx, sy) = seen.point(l, u, v);
+                // Back to coordinates about the centre.
+                x = l.select(seen.near, sx - (seen.x[0] + seen.x[1]) * l.real(0.5), x);
+                y = l.select(seen.near, sy - (seen.y[0] + seen.y[1]) * l.real(0.5), y);
+            }
+            let to = self
+                .plane
+                .towards(l, self.plane.towards_centre(l, p), [x, y]);
+            let area = l.splat(self.inverse_area);
+            let mut towards = by_area(l, to, self.plane.normal(l), seen.z, area, self.emits);
+            towards.pdf = l.select(seen.near, seen.pdf(l), towards.pdf);
+            towards
+        }))
+    }
+
+    #[inline(always)]
+    fn pdf<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        p: Vec3<L::Real>,
+        direction: Vec3<L::Real>,
+        _: Vec3<L::Real>,
+    ) -> L::Real {
+        self.density(l, p, direction)
     }
 }
 
@@ -181,10 +183,7 @@ impl<L: Lanes> Seen<L> {
         let one = l.real(1.0);
         let zero = l.real(0.0);
         let zz = self.z * self.z;
-        let b = inlined(
-            #[inline(always)]
-            |y: L::Real| y / y.mul_add(y, zz).sqrt(),
-        );
+        let b = inlined!(|y: L::Real| y / y.mul_add(y, zz).sqrt());
         let (b0, b1) = (-b(self.y[0]), b(self.y[1]));
         let angle = u.mul_add(self.turns, one - self.corners);
         let (sine, cosine) = sin_cos_turns(l, angle);
@@ -194,10 +193,7 @@ impl<L: Lanes> Seen<L> {
         let across = -(c * self.z) / (-c).mul_add(c, one).max(zero).sqrt();
         let x = across.max(self.x[0]).min(self.x[1]);
         let d2 = x.mul_add(x, zz);
-        let h = inlined(
-            #[inline(always)]
-            |y: L::Real| y / y.mul_add(y, d2).sqrt(),
-        );
+        let h = inlined!(|y: L::Real| y / y.mul_add(y, d2).sqrt());
         let (h0, h1) = (h(self.y[0]), h(self.y[1]));
         let hv = v.mul_add(h1 - h0, h0);
         let y = hv * (d2 / (-hv).mul_add(hv, one)).sqrt();

@@ -5,7 +5,7 @@ use crate::math::lanes::Scalar;
 use crate::math::lookup::SMALL;
 
 /// Columns of a list of lights.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct SmallLights<T> {
     /// [`LaneLight::probability`].
     pub probability: [T; SMALL],
@@ -23,35 +23,20 @@ impl<T: Scalar> SmallLights<T> {
     /// The lights, where they are few and there is more than one sphere: then lanes with different
     /// lights can be sampled together.
     pub fn new(lights: &[LaneLight<T>]) -> Option<Self> {
-        let spheres = lights.iter().filter(|light| light.sphere().is_some());
-        if lights.len() > SMALL || spheres.count() < 2 {
+        let is_sphere = |light: &&LaneLight<T>| matches!(light.shape, LightShape::Sphere(_));
+        if lights.len() > SMALL || lights.iter().filter(is_sphere).count() < 2 {
             return None;
         }
-        let mut table = Self {
-            probability: [T::default(); SMALL],
-            spectrum: [0; SMALL],
-            object: [0; SMALL],
-            is_sphere: [0; SMALL],
-            spheres: SphereTable::default(),
-        };
+        let mut table = Self::default();
         for (k, light) in lights.iter().enumerate() {
             table.probability[k] = light.probability;
             table.spectrum[k] = light.spectrum;
             table.object[k] = light.object;
-            if let Some(sphere) = light.sphere() {
+            if let LightShape::Sphere(sphere) = &light.shape {
                 table.is_sphere[k] = 1;
                 table.spheres.set(k, sphere);
             }
         }
         Some(table)
-    }
-}
-
-impl<T> LaneLight<T> {
-    fn sphere(&self) -> Option<&super::SphereLight<T>> {
-        match &self.shape {
-            LightShape::Sphere(sphere) => Some(sphere),
-            _ => None,
-        }
     }
 }

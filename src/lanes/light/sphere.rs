@@ -1,13 +1,16 @@
 //! Spherical lights.
 
+use std::f64::consts::{PI, TAU};
+
 use glam::DVec3;
 
-use super::{Towards, vector};
+use super::{Emitting, Light, Towards, scalars, vector};
 use crate::math::functions::sin_cos_turns;
-use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar, inlined};
+use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::lookup::SMALL;
 use crate::math::vec3::Vec3;
 use crate::sample::warp::uniform_sphere;
+use crate::shape::Emitter;
 
 /// A sphere, sampled uniformly in the cone it fills from outside (P. Shirley, C. Wang and
 /// K. Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", ACM TOG 15 (1996)),
@@ -31,25 +34,13 @@ pub struct Spheres<L: Lanes> {
 }
 
 /// A few spheres by number, to be looked up lane by lane.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct SphereTable<T> {
     centre: [[T; SMALL]; 3],
     radius: [T; SMALL],
     inside_squared: [T; SMALL],
     /// Whether front and back emit, as bits.
     emits: [u32; SMALL],
-}
-
-impl<T: Scalar> Default for SphereTable<T> {
-    fn default() -> Self {
-        let zeros = [T::default(); SMALL];
-        Self {
-            centre: [zeros; 3],
-            radius: zeros,
-            inside_squared: zeros,
-            emits: [0; SMALL],
-        }
-    }
 }
 
 impl<T: Scalar> SphereTable<T> {
@@ -68,10 +59,7 @@ impl<T: Scalar> SphereTable<T> {
     pub fn at<L: Lanes<Scalar = T>>(&self, l: L, k: L::Int) -> Spheres<L> {
         let [x, y, z] = &self.centre;
         let emits = l.lookup_int(&self.emits, k);
-        let side = inlined(
-            #[inline(always)]
-            |bit: u32| !(emits & l.int(bit)).same(l.int(0)),
-        );
+        let side = inlined!(|bit: u32| !(emits & l.int(bit)).same(l.int(0)));
         Spheres {
             centre: Vec3::new(l.lookup(x, k), l.lookup(y, k), l.lookup(z, k)),
             radius: l.lookup(&self.radius, k),
@@ -109,7 +97,7 @@ impl<T: Scalar> SphereLight<T> {
     pub(super) fn with_walls(centre: DVec3, radius: f64, off: f64, emits: [bool; 2]) -> Self {
         let margin = if emits[1] { 2.0 * off / radius } else { 0.0 };
         Self {
-            centre: centre.to_array().map(T::from_f64),
+            centre: scalars(centre),
             radius: T::from_f64(radius),
             inside_squared: T::from_f64(radius * radius * (1.0 + margin)),
             emits,
@@ -127,32 +115,46 @@ impl<T: Scalar> SphereLight<T> {
         }
     }
 
-    /// A direction from p.
-    #[inline(always)]
-    pub fn sample<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        p: Vec3<L::Real>,
-        numbers: [L::Real; 2],
-    ) -> Towards<L> {
-        self.everywhere(l).sample(l, p, numbers, l.mask(true))
-    }
-
-    /// Density of [`Self::sample`].
+    /// Density of [`Light::sample`].
     #[inline(never)]
-    pub fn pdf<L: Lanes<Scalar = T>>(
+    pub(super) fn density<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         p: Vec3<L::Real>,
         direction: Vec3<L::Real>,
     ) -> L::Real {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let spheres = self.everywhere(l);
-                spheres.density(l, &spheres.cone(l, p), direction, l.mask(true))
-            },
-        )
+        l.vectorize(inlined!(|| {
+            let spheres = self.everywhere(l);
+            spheres.density(l, &spheres.cone(l, p), direction, l.mask(true))
+        }))
+    }
+}
+
+impl<T: Scalar> Light<T> for SphereLight<T> {
+    const STRATEGY: &'static str = "by the solid angle of its cone from outside, by area inside";
+
+    fn of_shape(shape: &Emitting<'_>) -> Option<(Self, f64)> {
+        (shape.form == Emitter::Sphere && shape.to_world.is_similarity()).then(|| {
+            let radius = shape.to_world.columns()[0].length();
+            let light = Self::new(shape.to_world.translation(), radius, shape.emits);
+            (light, 4.0 * PI * radius * radius)
+        })
+    }
+
+    #[inline(always)]
+    fn sample<L: Lanes<Scalar = T>>(&self, l: L, p: Vec3<L::Real>, u: [L::Real; 2]) -> Towards<L> {
+        self.everywhere(l).sample(l, p, u, l.mask(true))
+    }
+
+    #[inline(always)]
+    fn pdf<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        p: Vec3<L::Real>,
+        direction: Vec3<L::Real>,
+        _: Vec3<L::Real>,
+    ) -> L::Real {
+        self.density(l, p, direction)
     }
 }
 
@@ -169,7 +171,7 @@ impl<L: Lanes> Spheres<L> {
             to,
             squared,
             height: sine_squared / both,
-            pdf: both * squared / (radius_squared * l.real(std::f64::consts::TAU)),
+            pdf: both * squared / (radius_squared * l.real(TAU)),
             outside: squared.gt(self.inside_squared),
         }
     }
@@ -177,46 +179,43 @@ impl<L: Lanes> Spheres<L> {
     /// A direction from p; what is said of lanes outside of `m` means nothing.
     #[inline(never)]
     pub fn sample(&self, l: L, p: Vec3<L::Real>, [u, v]: [L::Real; 2], m: L::Mask) -> Towards<L> {
-        l.vectorize(
-            #[inline(always)]
-            || {
-                let one = l.real(1.0);
-                let zero = l.real(0.0);
-                let cone = self.cone(l, p);
-                // In the cone: 1 − cos θ uniform.
-                let height = u * cone.height;
-                let cosine = one - height;
-                let sine_squared = height * (one + cosine);
-                let (s, c) = sin_cos_turns(l, v);
-                let sine = sine_squared.sqrt();
-                let far = cone.squared.sqrt();
-                let axis = cone.to.scale(one / far);
-                let (a, b) = axis.frame(l);
-                let mut direction = axis.scale(cosine).along(a, sine * c).along(b, sine * s);
-                // Nearer crossing: d cos θ − √(r² − d² sin² θ).
-                let half = (-cone.squared)
-                    .mul_add(sine_squared, self.radius * self.radius)
-                    .max(zero)
-                    .sqrt();
-                let mut distance = far.mul_add(cosine, -half);
-                let inside = m & !cone.outside;
-                if inside.any() {
-                    // By area.
-                    let w = uniform_sphere(l, u, v);
-                    let to = cone.to.along(w, self.radius);
-                    let from_inside = to.length_squared().sqrt();
-                    let inward = to.scale(one / from_inside);
-                    direction = Vec3::select(l, inside, inward, direction);
-                    distance = l.select(inside, from_inside, distance);
-                }
-                Towards {
-                    direction,
-                    distance,
-                    pdf: self.density(l, &cone, direction, m),
-                    valid: (cone.outside & self.emits[0]) | (self.emits[1] & !cone.outside),
-                }
-            },
-        )
+        l.vectorize(inlined!(|| {
+            let one = l.real(1.0);
+            let zero = l.real(0.0);
+            let cone = self.cone(l, p);
+            // In the cone: 1 − cos θ uniform.
+            let height = u * cone.height;
+            let cosine = one - height;
+            let sine_squared = height * (one + cosine);
+            let (s, c) = sin_cos_turns(l, v);
+            let sine = sine_squared.sqrt();
+            let far = cone.squared.sqrt();
+            let axis = cone.to.scale(one / far);
+            let (a, b) = axis.frame(l);
+            let mut direction = axis.scale(cosine).along(a, sine * c).along(b, sine * s);
+            // Nearer crossing: d cos θ − √(r² − d² sin² θ).
+            let half = (-cone.squared)
+                .mul_add(sine_squared, self.radius * self.radius)
+                .max(zero)
+                .sqrt();
+            let mut distance = far.mul_add(cosine, -half);
+            let inside = m & !cone.outside;
+            if inside.any() {
+                // By area.
+                let w = uniform_sphere(l, u, v);
+                let to = cone.to.along(w, self.radius);
+                let from_inside = to.length_squared().sqrt();
+                let inward = to.scale(one / from_inside);
+                direction = Vec3::select(l, inside, inward, direction);
+                distance = l.select(inside, from_inside, distance);
+            }
+            Towards {
+                direction,
+                distance,
+                pdf: self.density(l, &cone, direction, m),
+                valid: (cone.outside & self.emits[0]) | (self.emits[1] & !cone.outside),
+            }
+        }))
     }
 
     /// Uniform in the cone from outside; from inside t²/(A cos) at the crossing ahead, with
@@ -237,7 +236,7 @@ impl<L: Lanes> Spheres<L> {
         let half = half.max(self.radius * l.real(L::Scalar::ROUNDOFF));
         let depth = (radius_squared - cone.squared).max(zero);
         let t = l.select(ahead.gt(zero), half + ahead, depth / (half - ahead));
-        let area = radius_squared * l.real(4.0 * std::f64::consts::PI);
+        let area = radius_squared * l.real(4.0 * PI);
         let by_area = t * t * self.radius / (half * area);
         l.select(cone.outside, uniform, by_area)
     }

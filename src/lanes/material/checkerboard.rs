@@ -2,34 +2,24 @@
 
 use glam::DVec3;
 
-use super::diffuse::Diffuse;
-use super::{
-    Densities, Event, Interface, Lanes, Material, MaterialKind, NUMBERS, SPECTRA, Transport,
-    Variates, Vec3,
-};
+use super::{Lanes, Material, MaterialKind, NUMBERS, SPECTRA, Vec3};
 use crate::declare::{Declaration, Parameter, Quantity, Range, Role};
-use crate::math::lanes::{Real, inlined};
+use crate::math::lanes::Real;
 
-/// [`Diffuse`], of the first albedo in cells whose numbers sum to an even one, else of the second.
+/// [`Diffuse`](super::diffuse::Diffuse), of the first albedo in cells whose numbers sum to an even one, else of the second.
 pub struct Checkerboard;
 
 impl Material for Checkerboard {
-    const DECLARATION: Declaration = Declaration {
-        beside: &[Parameter {
-            key: "cell",
-            what: "edge of a cell",
-            quantity: Quantity::Number {
-                unit: "object coordinates",
-                range: Range::POSITIVE,
-            },
-            default: None,
-        }],
-        ..Declaration::new(
-            "checkerboard",
-            "albedos",
-            Quantity::TwoSpectra(Role::Reflectance),
-        )
-    };
+    const DECLARATION: Declaration = Declaration::new(
+        "checkerboard",
+        "albedos",
+        Quantity::TwoSpectra(Role::Reflectance),
+    )
+    .beside(&[Parameter::new(
+        "cell",
+        "edge of a cell",
+        Quantity::number("object coordinates", Range::POSITIVE),
+    )]);
     const WORDS: &'static str = "checkerboard";
     const TEXTURE_OF: Option<MaterialKind> = Some(MaterialKind::Diffuse);
     const SPREAD: bool = true;
@@ -49,35 +39,9 @@ impl Material for Checkerboard {
         local: Vec3<L::Real>,
         [even, odd]: [L::Int; SPECTRA],
     ) -> [L::Int; SPECTRA] {
-        let cell = inlined(
-            #[inline(always)]
-            |x: L::Real, frequency: L::Real| (x * frequency).floor(),
-        );
+        let cell = inlined!(|x: L::Real, frequency: L::Real| (x * frequency).floor());
         let [fx, fy, fz] = numbers;
         let half = (cell(local.x, fx) + cell(local.y, fy) + cell(local.z, fz)) * l.real(0.5);
         [l.select_int(half.same(half.floor()), even, odd), odd]
-    }
-
-    #[inline(always)]
-    fn sample<L: Lanes, const C: usize>(
-        l: L,
-        at: &Interface<'_, L, C>,
-        wo: Vec3<L::Real>,
-        transport: Transport,
-        u: Variates<L>,
-        weigh: impl FnMut(usize, &[L::Scalar; C]),
-    ) -> Event<L> {
-        Diffuse::sample(l, at, wo, transport, u, weigh)
-    }
-
-    #[inline(always)]
-    fn evaluate<L: Lanes, const C: usize>(
-        l: L,
-        at: &Interface<'_, L, C>,
-        directions: [Vec3<L::Real>; 2],
-        transport: Transport,
-        value: impl FnMut(usize, &[L::Scalar; C]),
-    ) -> Densities<L> {
-        Diffuse::evaluate(l, at, directions, transport, value)
     }
 }

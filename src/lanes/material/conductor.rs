@@ -5,8 +5,9 @@ use super::{Event, Interface, Lanes, Material, Transport, Variates, Vec3, fresne
 use crate::declare::{Declaration, Quantity};
 use crate::math::lanes::Mask;
 use crate::math::packet::{array, each};
+use crate::planted::unpolarised;
 
-/// Reflects by [`fresnel::conductor`].
+/// Reflects by [`fresnel::conductor_polarised`].
 pub struct Conductor;
 
 impl Material for Conductor {
@@ -27,21 +28,16 @@ impl Material for Conductor {
         let (cosine, mirrored) = at.mirrored(l, wo);
         let indices = at.wavelengths.rows(l, at.spectra[0]);
         let extinctions = at.wavelengths.rows(l, at.spectra[1]);
-        let outside = at.index(l, at.outside);
+        let outside = at.index_rows(l, at.outside);
         let cosines = array(l, cosine);
-        #[cfg(not(feature = "planted"))]
-        let reflected = fresnel::conductor::<L::Scalar>;
-        #[cfg(feature = "planted")]
-        let reflected = |cosine, n, k| {
-            let polarised = fresnel::conductor_polarised(cosine, n, k);
-            crate::planted::unpolarised(at.planted, polarised)
-        };
         for i in each(at.lanes.bits()) {
             let (n, k) = (at.values(i, &indices), at.values(i, &extinctions));
-            let around = outside.at(i);
+            let around = at.index(i, &outside);
             let mut reflectance = *n;
             for c in 0..C {
-                reflectance[c] = reflected(cosines[i], n[c] / around[c], k[c] / around[c]);
+                let (n, k) = (n[c] / around[c], k[c] / around[c]);
+                let polarised = fresnel::conductor_polarised(cosines[i], n, k);
+                reflectance[c] = unpolarised(at.planted, polarised);
             }
             weigh(i, &reflectance);
         }

@@ -30,7 +30,7 @@ impl Material for Glass {
         let (cosine, mirrored) = at.mirrored(l, wo);
         let disperses = at.disperses & !at.wavelengths.ended;
         let (spreads, front) = (disperses.bits(), at.front.bits());
-        let (outside, inside) = (at.index(l, at.outside), at.index(l, at.inside));
+        let (outside, inside) = (at.index_rows(l, at.outside), at.index_rows(l, at.inside));
         let (cosines, variates) = (array(l, cosine), array(l, u.choice));
         let mut etas = [L::Scalar::from_f64(1.0); WIDEST];
         let (mut pdfs, mut reverses) = (etas, etas);
@@ -38,7 +38,7 @@ impl Material for Glass {
         for i in each(at.lanes.bits()) {
             let hero = at.wavelengths.hero(i);
             let entering = front >> i & 1 == 1;
-            let eta = relative(outside.at(i), inside.at(i), entering);
+            let eta = relative(at.index(i, &outside), at.index(i, &inside), entering);
             etas[i] = eta[hero];
             let choice = Choice {
                 cosine: cosines[i],
@@ -83,16 +83,16 @@ fn relative<T: Scalar, const C: usize>(outside: [T; C], inside: [T; C], entering
     eta
 }
 
-/// A path that has to choose.
+/// What a path chooses by: reflection or refraction.
 struct Choice<T, const C: usize> {
     cosine: T,
     eta: [T; C],
     hero: usize,
-    /// Its wavelengths part where they are refracted.
+    /// Refraction parts its wavelengths.
     disperses: bool,
 }
 
-/// What it has chosen.
+/// What a path has chosen.
 struct Chosen<T> {
     refracts: bool,
     probability: T,

@@ -4,6 +4,7 @@ use super::{NUMBERS, SPECTRA};
 use crate::math::lanes::{Int, Lanes, Real, Scalar, WIDEST};
 use crate::math::packet::int_array;
 use crate::math::vec3::Vec3;
+use crate::planted::Planted;
 
 /// What a path carries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,7 +26,7 @@ pub enum Medium<L: Lanes> {
 /// The wavelengths that the paths of a packet carry, and spectra there.
 #[derive(Clone, Copy)]
 pub struct Wavelengths<'a, L: Lanes, const C: usize> {
-    /// The bank of spectra.
+    /// The rows of the bank of spectra.
     pub bank: &'a [[L::Scalar; C]],
     /// Which row of every spectrum holds the path's wavelengths.
     pub row: L::Int,
@@ -85,12 +86,11 @@ pub struct Interface<'a, L: Lanes, const C: usize> {
     pub disperses: L::Mask,
     /// The material's spectra: where they stand in the bank.
     pub spectra: [L::Int; SPECTRA],
-    /// The material's numbers.
+    /// The material's numbers, see [`Material::numbers`](super::Material::numbers).
     pub numbers: [L::Real; NUMBERS],
     pub wavelengths: Wavelengths<'a, L, C>,
-    /// A deliberate mistake.
-    #[cfg(feature = "planted")]
-    pub planted: Option<crate::planted::Planted>,
+    /// A deliberate mistake, for builds that make it.
+    pub planted: Option<Planted>,
 }
 
 impl<L: Lanes, const C: usize> Interface<'_, L, C> {
@@ -100,15 +100,23 @@ impl<L: Lanes, const C: usize> Interface<'_, L, C> {
         &self.wavelengths.bank[rows[i % WIDEST] as usize]
     }
 
-    /// The refractive indices of a medium, to be asked lane by lane.
+    /// The bank's rows that hold the refractive index of a medium at each lane's wavelengths; `None` for
+    /// the vacuum.
     #[inline(always)]
-    pub fn index(&self, l: L, medium: Medium<L>) -> Indices<'_, L, C> {
-        Indices {
-            wavelengths: &self.wavelengths,
-            rows: match medium {
-                Medium::Vacuum => None,
-                Medium::Index([n, _]) => Some(self.wavelengths.rows(l, n)),
-            },
+    pub fn index_rows(&self, l: L, medium: Medium<L>) -> Option<[u32; WIDEST]> {
+        match medium {
+            Medium::Vacuum => None,
+            Medium::Index([n, _]) => Some(self.wavelengths.rows(l, n)),
+        }
+    }
+
+    /// The refractive index of a medium at lane i's wavelengths; `rows` are those of
+    /// [`Self::index_rows`].
+    #[inline(always)]
+    pub fn index(&self, i: usize, rows: &Option<[u32; WIDEST]>) -> [L::Scalar; C] {
+        match rows {
+            None => [L::Scalar::from_f64(1.0); C],
+            Some(rows) => self.wavelengths.between_nodes(i, rows[i]),
         }
     }
 
@@ -118,23 +126,6 @@ impl<L: Lanes, const C: usize> Interface<'_, L, C> {
         let cosine = wo.dot(self.shading).max(l.real(0.0)).min(l.real(1.0));
         let mirrored = (-wo).along(self.shading, cosine + cosine);
         (cosine, mirrored)
-    }
-}
-
-/// Refractive indices of a medium, nodes in the bank.
-pub struct Indices<'a, L: Lanes, const C: usize> {
-    wavelengths: &'a Wavelengths<'a, L, C>,
-    rows: Option<[u32; WIDEST]>,
-}
-
-impl<L: Lanes, const C: usize> Indices<'_, L, C> {
-    /// At lane i's wavelengths.
-    #[inline(always)]
-    pub fn at(&self, i: usize) -> [L::Scalar; C] {
-        match &self.rows {
-            None => [L::Scalar::from_f64(1.0); C],
-            Some(rows) => self.wavelengths.between_nodes(i, rows[i]),
-        }
     }
 }
 

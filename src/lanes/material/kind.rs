@@ -27,9 +27,9 @@ pub trait Material {
     const LAMBERTIAN: bool = false;
     /// Light passes through it; its first two spectra are n and k of what is inside.
     const REFRACTS: bool = false;
-    /// It wants [`Variates::choice`].
+    /// Its events depend on [`Variates::choice`].
     const CHOOSES: bool = false;
-    /// It reads [`Interface::numbers`].
+    /// Its answers depend on [`Interface::numbers`].
     const NUMBERED: bool = false;
 
     /// Its numbers as lanes read them, from the parameters of scene files and the size of the object
@@ -54,15 +54,23 @@ pub trait Material {
     }
 
     /// Where the path goes on. `weigh` is called with each lane and its weights, one a wavelength:
-    /// bsdf · |cos|/pdf, or what a delta event leaves of the light over its probability.
+    /// bsdf · |cos|/pdf, or what a delta event leaves of the light over its probability. Without a
+    /// definition of its own, a material lets nothing go on.
+    #[inline(always)]
     fn sample<L: Lanes, const C: usize>(
         l: L,
-        at: &Interface<'_, L, C>,
+        _at: &Interface<'_, L, C>,
         wo: Vec3<L::Real>,
-        transport: Transport,
-        u: Variates<L>,
-        weigh: impl FnMut(usize, &[L::Scalar; C]),
-    ) -> Event<L>;
+        _transport: Transport,
+        _u: Variates<L>,
+        _weigh: impl FnMut(usize, &[L::Scalar; C]),
+    ) -> Event<L> {
+        Event {
+            pdf: l.real(0.0),
+            reverse: l.real(0.0),
+            ..Event::reflection(l, wo)
+        }
+    }
 
     /// The part that is not delta, from wo to wi. `value` is called with each lane and the bsdf, sr⁻¹,
     /// without the cosine.
@@ -80,30 +88,35 @@ pub trait Material {
             reverse: zero,
         }
     }
+
+    /// Does a job for this type.
+    fn run<J: MaterialJob>(job: J) -> J::Output
+    where
+        Self: Sized,
+    {
+        job.run::<Self>()
+    }
+}
+
+/// Something to do for the type of a material.
+pub trait MaterialJob {
+    type Output;
+    fn run<M: Material>(self) -> Self::Output;
 }
 
 macro_rules! materials {
     ($($(#[$attribute:meta])? $kind:ident in $module:ident,)*) => {
-        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-        #[repr(u32)]
-        pub enum MaterialKind {
-            $(
-                $(#[$attribute])?
-                #[doc = concat!("See [`", stringify!($kind), "`](super::", stringify!($module), "::", stringify!($kind), ").")]
-                $kind,
-            )*
-        }
-
-        impl MaterialKind {
-            /// All of them, in the order in which messages list them.
-            pub const ALL: &'static [Self] = &[$($(#[$attribute])? Self::$kind,)*];
-
-            /// Their keys in scene files; some have one in common.
-            pub const KEYS: &'static [&'static str] =
-                &[$(
-                    $(#[$attribute])?
-                    <super::$module::$kind as Material>::DECLARATION.main.key,
-                )*];
+        kinds! {
+            MaterialKind of Material {
+                $($(#[$attribute])? $kind in $module,)*
+            }
+            fn declaration(self) -> Declaration = DECLARATION;
+            fn words(self) -> &'static str = WORDS;
+            fn branch(self) -> Option<&'static str> = BRANCH;
+            fn texture_of(self) -> Option<Self> = TEXTURE_OF;
+            fn is_delta(self) -> bool = DELTA;
+            fn is_spread(self) -> bool = SPREAD;
+            fn refracts(self) -> bool = REFRACTS;
         }
 
         $(
@@ -112,28 +125,6 @@ macro_rules! materials {
                 <super::$module::$kind as Material>::DECLARATION.spectra() <= SPECTRA
             );
         )*
-
-        /// Evaluates an item of a kind's type.
-        macro_rules! of {
-            ($self:expr, $item:ident) => {
-                match $self {
-                    $(
-                        $(#[$attribute])?
-                        MaterialKind::$kind => <super::$module::$kind as Material>::$item,
-                    )*
-                }
-            };
-            ($self:expr, $item:ident $item_arguments:tt) => {
-                match $self {
-                    $(
-                        $(#[$attribute])?
-                        MaterialKind::$kind => {
-                            <super::$module::$kind as Material>::$item $item_arguments
-                        }
-                    )*
-                }
-            };
-        }
 
         /// Does something for each material that scatters by itself; its type and its kind are called
         /// `$material` and `$own`.
@@ -150,22 +141,6 @@ macro_rules! materials {
             };
         }
         pub(crate) use each_material;
-
-        /// Evaluates an expression for the type of a kind, called `$material`.
-        macro_rules! with_material {
-            ($of:expr, $material:ident => $do:expr) => {
-                match $of {
-                    $(
-                        $(#[$attribute])?
-                        $crate::material::MaterialKind::$kind => {
-                            type $material = $crate::material::$module::$kind;
-                            $do
-                        }
-                    )*
-                }
-            };
-        }
-        pub(crate) use with_material;
     };
 }
 
@@ -181,40 +156,9 @@ materials! {
 }
 
 impl MaterialKind {
-    /// [`Material::DECLARATION`].
-    pub fn declaration(self) -> Declaration {
-        of!(self, DECLARATION)
-    }
-
-    /// [`Material::WORDS`].
-    pub fn words(self) -> &'static str {
-        of!(self, WORDS)
-    }
-
-    /// [`Material::BRANCH`].
-    pub fn branch(self) -> Option<&'static str> {
-        of!(self, BRANCH)
-    }
-
-    /// [`Material::TEXTURE_OF`].
-    #[inline(always)]
-    pub fn texture_of(self) -> Option<Self> {
-        of!(self, TEXTURE_OF)
-    }
-
-    /// [`Material::DELTA`].
-    pub fn is_delta(self) -> bool {
-        of!(self, DELTA)
-    }
-
-    /// [`Material::SPREAD`].
-    pub fn is_spread(self) -> bool {
-        of!(self, SPREAD)
-    }
-
-    /// [`Material::REFRACTS`].
-    pub fn refracts(self) -> bool {
-        of!(self, REFRACTS)
+    /// [`Material::run`].
+    pub fn run<J: MaterialJob>(self, job: J) -> J::Output {
+        of!(self, run(job))
     }
 
     /// [`Material::numbers`].
@@ -240,7 +184,7 @@ impl MaterialKind {
 pub struct MaterialKinds(u32);
 
 impl MaterialKinds {
-    /// Whether a material is in it.
+    /// Whether a material is in the set.
     #[inline(always)]
     pub fn contains(self, kind: MaterialKind) -> bool {
         self.0 >> kind as u32 & 1 == 1
@@ -249,10 +193,7 @@ impl MaterialKinds {
 
 impl FromIterator<MaterialKind> for MaterialKinds {
     fn from_iter<I: IntoIterator<Item = MaterialKind>>(kinds: I) -> Self {
-        Self(
-            kinds
-                .into_iter()
-                .fold(0, |all, kind| all | 1 << kind as u32),
-        )
+        let bits = kinds.into_iter().map(|kind| 1 << kind as u32);
+        Self(bits.fold(0, |all, bit| all | bit))
     }
 }

@@ -7,7 +7,7 @@ use crate::declare::{Declaration, Quantity, Role};
 use crate::math::lanes::Mask;
 use crate::math::packet::each;
 
-/// Reflects a share of the light.
+/// Reflects the same share of the light at all angles.
 pub struct Mirror;
 
 impl Material for Mirror {

@@ -17,10 +17,10 @@ pub mod phong;
 pub mod record;
 
 pub use interface::{Densities, Event, Interface, Medium, Transport, Variates, Wavelengths};
-pub use kind::{Material, MaterialKind, MaterialKinds};
+pub use kind::{Material, MaterialJob, MaterialKind, MaterialKinds};
 pub use record::{NUMBERS, Record, SPECTRA, Surface};
 
-pub(crate) use kind::{each_material, with_material};
+pub(crate) use kind::each_material;
 
 use crate::math::lanes::Lanes;
 use crate::math::vec3::Vec3;

@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_1_PI, TAU};
 
 use super::interface::unit_again;
 use super::{Densities, Event, Interface, Lanes, Material, Transport, Variates, Vec3, diffuse};
-use crate::declare::{Declaration, Parameter, Quantity, Range, Role};
+use crate::declare::{Declaration, Parameter, Quantity, Range, Role, Usual};
 use crate::math::functions::sin_cos_turns;
 use crate::math::lanes::{Mask, Real, Scalar};
 use crate::math::packet::{array, each};
@@ -17,7 +17,7 @@ use crate::sample::warp::cosine_hemisphere_pdf;
 /// and a share of the light that goes exactly there.
 pub struct Phong;
 
-/// Most halvings: n is less than 2⁸.
+/// Most halvings k, so that n is less than 2⁸.
 const HALVINGS: u32 = 8;
 
 struct Numbers<L: Lanes> {
@@ -41,18 +41,16 @@ struct Spread<L: Lanes> {
 }
 
 impl Material for Phong {
-    const DECLARATION: Declaration = Declaration {
-        beside: &[
-            number("halvings", "k, where the exponent is 2^k - 1", 8.0, 3.0),
-            number("mirror_share", "share of the light mirrored", 1.0, 0.0),
-            number("lobe_share", "how often the lobe is chosen", 1.0, 0.5),
-        ],
-        ..Declaration::new(
-            "phong",
-            "diffuse and lobe reflectance",
-            Quantity::TwoSpectra(Role::Reflectance),
-        )
-    };
+    const DECLARATION: Declaration = Declaration::new(
+        "phong",
+        "diffuse and lobe reflectance",
+        Quantity::TwoSpectra(Role::Reflectance),
+    )
+    .beside(&[
+        number("halvings", "k, where the exponent is 2^k - 1", 8.0, 3.0),
+        number("mirror_share", "share of the light mirrored", 1.0, 0.0),
+        number("lobe_share", "how often the lobe is chosen", 1.0, 0.5),
+    ]);
     const WORDS: &'static str = "Phong";
     const BRANCH: Option<&'static str> = Some("Phong lobes");
     const DELTA: bool = true;
@@ -115,15 +113,8 @@ impl Material for Phong {
 }
 
 const fn number(key: &'static str, what: &'static str, most: f64, default: f64) -> Parameter {
-    Parameter {
-        key,
-        what,
-        quantity: Quantity::Number {
-            unit: "",
-            range: Range::between(0.0, most),
-        },
-        default: Some(default),
-    }
+    Parameter::new(key, what, Quantity::number("", Range::between(0.0, most)))
+        .usually(Usual::Number(default))
 }
 
 impl<L: Lanes> Numbers<L> {

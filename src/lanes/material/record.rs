@@ -1,4 +1,4 @@
-//! A material's parameters.
+//! The parameters of a material: as a scene file gives them, and as the loop reads them.
 
 use glam::DVec3;
 
@@ -16,13 +16,11 @@ pub const NUMBERS: usize = 3;
 /// [`Declaration`](crate::declare::Declaration).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
-    /// The material.
     pub kind: MaterialKind,
-    /// The parameters.
     pub values: Vec<Value>,
 }
 
-/// The same as the loop reads it.
+/// A [`Surface`] as the loop reads it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Record<T> {
     /// The material that scatters.
@@ -37,7 +35,7 @@ pub struct Record<T> {
 }
 
 impl Surface {
-    /// What `info` calls it.
+    /// The surface in the words of `info`.
     pub fn words(&self) -> String {
         let name = self.kind.words();
         if self.disperses() {
@@ -55,10 +53,7 @@ impl Surface {
 
     /// Its spectra, other than refractive indices.
     pub fn spectra(&self) -> impl Iterator<Item = &Spectrum> {
-        self.values.iter().filter_map(|value| match value {
-            Value::Spectrum(spectrum) => Some(spectrum),
-            Value::Number(_) | Value::Index(_) => None,
-        })
+        self.values.iter().filter_map(Value::spectrum)
     }
 
     /// Its record, on an object of this size over its canonical shape. `place` puts a value's spectra
@@ -73,11 +68,7 @@ impl Surface {
         for (spectrum, start) in spectra.iter_mut().zip(starts) {
             *spectrum = start;
         }
-        let numbers = self.values.iter().filter_map(|value| match value {
-            Value::Number(number) => Some(*number),
-            Value::Spectrum(_) | Value::Index(_) => None,
-        });
-        let numbers: Vec<f64> = numbers.collect();
+        let numbers: Vec<f64> = self.values.iter().filter_map(Value::number).collect();
         let texture_of = self.kind.texture_of();
         Record {
             kind: texture_of.unwrap_or(self.kind),

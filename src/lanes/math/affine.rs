@@ -23,23 +23,15 @@ impl Affine {
     };
 
     pub fn scale(s: DVec3) -> Self {
-        Self {
-            rows: [
-                [s.x, 0.0, 0.0, 0.0],
-                [0.0, s.y, 0.0, 0.0],
-                [0.0, 0.0, s.z, 0.0],
-            ],
-        }
+        let mut map = Self::IDENTITY;
+        (0..3).for_each(|i| map.rows[i][i] = s[i]);
+        map
     }
 
     pub fn translate(t: DVec3) -> Self {
-        Self {
-            rows: [
-                [1.0, 0.0, 0.0, t.x],
-                [0.0, 1.0, 0.0, t.y],
-                [0.0, 0.0, 1.0, t.z],
-            ],
-        }
+        let mut map = Self::IDENTITY;
+        (0..3).for_each(|i| map.rows[i][3] = t[i]);
+        map
     }
 
     /// `self` after `first`: x ↦ self(first(x)). Each entry is one dot product of f64 (the zero
@@ -58,7 +50,7 @@ impl Affine {
     }
 
     pub fn point(&self, p: DVec3) -> DVec3 {
-        self.vector(p) + DVec3::new(self.rows[0][3], self.rows[1][3], self.rows[2][3])
+        self.vector(p) + self.translation()
     }
 
     /// Image of a vector (no translation).
@@ -69,6 +61,12 @@ impl Affine {
             r[1][0] * v.x + r[1][1] * v.y + r[1][2] * v.z,
             r[2][0] * v.x + r[2][1] * v.y + r[2][2] * v.z,
         )
+    }
+
+    /// The magnitudes of the entries.
+    pub fn abs(&self) -> Self {
+        let rows = self.rows.map(|row| row.map(f64::abs));
+        Self { rows }
     }
 
     pub fn columns(&self) -> [DVec3; 3] {

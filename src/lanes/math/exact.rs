@@ -19,10 +19,11 @@ pub const VALUE_BITS: u64 = 1024;
 
 impl Exact {
     pub fn integer(mantissa: BigInt) -> Self {
-        Self {
-            mantissa,
-            exponent: 0,
-        }
+        Self::new(mantissa, 0)
+    }
+
+    fn new(mantissa: BigInt, exponent: i64) -> Self {
+        Self { mantissa, exponent }
     }
 
     /// m and e of the number m · 2ᵉ.
@@ -47,18 +48,12 @@ impl Exact {
 
     /// self · 2^exponent.
     pub fn shifted(&self, exponent: i64) -> Self {
-        Self {
-            mantissa: self.mantissa.clone(),
-            exponent: self.exponent + exponent,
-        }
+        Self::new(self.mantissa.clone(), self.exponent + exponent)
     }
 
-    fn order(&self) -> Ordering {
-        match self.mantissa.sign() {
-            Sign::Minus => Ordering::Less,
-            Sign::NoSign => Ordering::Equal,
-            Sign::Plus => Ordering::Greater,
-        }
+    /// Whether this is that number, which must be finite.
+    pub(super) fn is(&self, x: f64) -> bool {
+        self.minus(&Self::of(x)).mantissa.sign() == Sign::NoSign
     }
 }
 
@@ -70,10 +65,7 @@ impl Number for Exact {
         let biased = ((bits >> 52) & 0x7ff) as i64;
         let fraction = (bits & ((1 << 52) - 1)) as i64;
         if biased == 0x7ff || (biased == 0 && fraction == 0) {
-            return Self {
-                mantissa: BigInt::ZERO,
-                exponent: 0,
-            };
+            return Self::integer(BigInt::ZERO);
         }
         let mantissa = if biased == 0 {
             fraction
@@ -82,10 +74,8 @@ impl Number for Exact {
         };
         let trailing = mantissa.trailing_zeros();
         let signed = if x < 0.0 { -mantissa } else { mantissa } >> trailing;
-        Self {
-            mantissa: BigInt::from(signed),
-            exponent: biased.max(1) - 1075 + i64::from(trailing) + i64::from(exponent),
-        }
+        let exponent = biased.max(1) - 1075 + i64::from(trailing) + i64::from(exponent);
+        Self::new(signed.into(), exponent)
     }
 
     fn enclosing(x: &Exact) -> Self {
@@ -105,28 +95,20 @@ impl Number for Exact {
             return high.clone();
         }
         let shift = (high.exponent - low.exponent) as u64;
-        Self {
-            mantissa: (&high.mantissa << shift) + &low.mantissa,
-            exponent: low.exponent,
-        }
+        Self::new((&high.mantissa << shift) + &low.mantissa, low.exponent)
     }
 
     fn times(&self, other: &Self) -> Self {
-        Self {
-            mantissa: &self.mantissa * &other.mantissa,
-            exponent: self.exponent + other.exponent,
-        }
+        let exponent = self.exponent + other.exponent;
+        Self::new(&self.mantissa * &other.mantissa, exponent)
     }
 
     fn negated(&self) -> Self {
-        Self {
-            mantissa: -&self.mantissa,
-            exponent: self.exponent,
-        }
+        Self::new(-&self.mantissa, self.exponent)
     }
 
     fn sign(&self) -> Option<Ordering> {
-        Some(self.order())
+        Some(self.mantissa.cmp(&BigInt::ZERO))
     }
 
     /// Truncated to [`VALUE_BITS`]; 0 where the divisor is 0.
@@ -135,23 +117,14 @@ impl Number for Exact {
             return other.clone();
         }
         let (dividend, exponent) = self.widened_to(VALUE_BITS + other.mantissa.bits());
-        Self {
-            mantissa: dividend / &other.mantissa,
-            exponent: exponent - other.exponent,
-        }
+        Self::new(dividend / &other.mantissa, exponent - other.exponent)
     }
 
     /// Truncated to [`VALUE_BITS`]; 0 for negative numbers.
     fn square_root(&self) -> Self {
         let (radicand, exponent) = self.widened_to(2 * VALUE_BITS);
-        Self {
-            mantissa: if radicand.sign() == Sign::Minus {
-                BigInt::ZERO
-            } else {
-                radicand.sqrt()
-            },
-            exponent: exponent / 2,
-        }
+        // Of what is negative, 0.
+        Self::new(radicand.max(BigInt::ZERO).sqrt(), exponent / 2)
     }
 
     /// Rounded to nearest (in the subnormal range within one unit).

@@ -24,30 +24,40 @@ pub(super) fn polynomial<L: Lanes>(l: L, x: L::Real, coefficients: &[f64]) -> L:
     sum
 }
 
+/// The series `sign`ᵏ / (first + `step` k)!, whose factorials must be exact in f64: up to 18!.
+pub(super) const fn over_factorials<const N: usize>(first: u32, step: u32, sign: f64) -> [f64; N] {
+    let mut series = [0.0; N];
+    let (mut k, mut n, mut factorial, mut numerator) = (0, 0, 1.0, 1.0);
+    while k < N {
+        while n < first + step * k as u32 {
+            n += 1;
+            factorial *= n as f64;
+        }
+        series[k] = numerator / factorial;
+        numerator *= sign;
+        k += 1;
+    }
+    series
+}
+
+/// The series `sign`ᵏ / (2k + 1).
+pub(super) const fn over_odd<const N: usize>(sign: f64) -> [f64; N] {
+    let mut series = [0.0; N];
+    let (mut k, mut numerator) = (0, 1.0);
+    while k < N {
+        series[k] = numerator / (2 * k + 1) as f64;
+        numerator *= sign;
+        k += 1;
+    }
+    series
+}
+
 /// Taylor series of sin x / x in x².
-pub(super) const SIN: [f64; 9] = [
-    1.0,
-    -1.0 / 6.0,
-    1.0 / 120.0,
-    -1.0 / 5_040.0,
-    1.0 / 362_880.0,
-    -1.0 / 39_916_800.0,
-    1.0 / 6_227_020_800.0,
-    -1.0 / 1_307_674_368_000.0,
-    1.0 / 355_687_428_096_000.0,
-];
+pub(super) const SIN: [f64; 9] = over_factorials(1, 2, -1.0);
 /// Taylor series of cos x in x².
-pub(super) const COS: [f64; 9] = [
-    1.0,
-    -1.0 / 2.0,
-    1.0 / 24.0,
-    -1.0 / 720.0,
-    1.0 / 40_320.0,
-    -1.0 / 3_628_800.0,
-    1.0 / 479_001_600.0,
-    -1.0 / 87_178_291_200.0,
-    1.0 / 20_922_789_888_000.0,
-];
+pub(super) const COS: [f64; 9] = over_factorials(0, 2, -1.0);
+/// Taylor series of arctan x / x in x².
+pub(super) const ARCTAN: [f64; 21] = over_odd(-1.0);
 
 /// (sin x, cos x) for |x| ≤ π/4 by Taylor series in x².
 #[inline(always)]
@@ -105,19 +115,7 @@ pub(super) fn in_quadrant<L: Lanes>(
 /// Remainders relative to 2s: single s¹⁰/11 = 2e-9, double s²²/23 = 6e-19.
 #[inline(always)]
 pub fn ln<L: Lanes>(l: L, x: L::Real) -> L::Real {
-    const ARTANH: [f64; 11] = [
-        1.0,
-        1.0 / 3.0,
-        1.0 / 5.0,
-        1.0 / 7.0,
-        1.0 / 9.0,
-        1.0 / 11.0,
-        1.0 / 13.0,
-        1.0 / 15.0,
-        1.0 / 17.0,
-        1.0 / 19.0,
-        1.0 / 21.0,
-    ];
+    const ARTANH: [f64; 11] = over_odd(1.0);
     let one = l.real(1.0);
     let (m, e) = l.split_exponent(x);
     let large = m.gt(l.real(std::f64::consts::SQRT_2));
@@ -148,13 +146,7 @@ pub fn atan2_turns<L: Lanes>(l: L, y: L::Real, x: L::Real) -> L::Real {
     let z = l.select(large.gt(zero), z, -t);
     let zz = z * z;
     let terms = if single::<L>() { 10 } else { 21 };
-    let mut series = l.real(0.0);
-    let mut k = terms;
-    while k > 0 {
-        k -= 1;
-        let c = 1.0 / (2 * k + 1) as f64;
-        series = series.mul_add(zz, l.real(if k % 2 == 0 { c } else { -c }));
-    }
+    let series = polynomial(l, zz, &ARCTAN[..terms]);
     let turns = (z * series).mul_add(l.real(1.0 / std::f64::consts::TAU), one * l.real(0.0625));
     let turns = l.select(swap, l.real(0.25) - turns, turns);
     let turns = l.select(x.lt(zero), l.real(0.5) - turns, turns);

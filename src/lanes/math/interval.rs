@@ -1,4 +1,4 @@
-//! Intervals with outward rounding, in one lane or eight, with the same bits.
+//! Intervals with outward rounding, the same bits in one lane as in eight.
 //!
 //! An interval [low, high] holds every real number that its operands could have given. Each bound
 //! is computed with rounding to nearest, the only one there is on every machine, and moved one
@@ -70,47 +70,39 @@ pub struct Interval<L: DoubleLanes> {
 pub type ScalarInterval = Interval<One>;
 
 impl<L: DoubleLanes> Interval<L> {
-    /// From `low` to `high`; the caller sees to low ≤ high.
-    #[inline(always)]
-    pub fn new(lanes: L, low: L::Real, high: L::Real) -> Self {
-        Self { lanes, low, high }
-    }
-
-    /// The same interval in each lane.
-    #[inline(always)]
-    pub fn splat(lanes: L, [low, high]: [f64; 2]) -> Self {
-        Self::new(lanes, lanes.real(low), lanes.real(high))
-    }
-
-    #[inline(always)]
-    pub fn point(lanes: L, x: L::Real) -> Self {
-        Self::new(lanes, x, x)
-    }
-
-    #[inline(always)]
-    pub fn whole(lanes: L) -> Self {
-        Self::splat(lanes, [f64::NEG_INFINITY, f64::INFINITY])
-    }
-
-    #[inline(always)]
-    pub fn lane(&self, i: usize) -> [f64; 2] {
-        [self.lanes.lane(self.low, i), self.lanes.lane(self.high, i)]
+    methods! {
+        /// From `low` to `high`; the caller sees to low ≤ high.
+        pub fn new(lanes: L, low: L::Real, high: L::Real) -> Self = Self { lanes, low, high };
+        fn with(self, low: L::Real, high: L::Real) -> Self = Self { low, high, ..self };
+        pub fn point(lanes: L, x: L::Real) -> Self = Self::new(lanes, x, x);
+        /// The same interval in each lane.
+        pub fn splat(lanes: L, [low, high]: [f64; 2]) -> Self =
+            Self::new(lanes, lanes.real(low), lanes.real(high));
+        pub fn whole(lanes: L) -> Self = Self::splat(lanes, [f64::NEG_INFINITY, f64::INFINITY]);
+        /// All numbers that may have been rounded to `low`, to `high` or to one between them.
+        pub(super) fn outward(lanes: L, low: L::Real, high: L::Real) -> Self =
+            Self::new(lanes, down(lanes, low), up(lanes, high));
+        pub fn whole_where(self, mask: L::Mask) -> Self =
+            Self::whole(self.lanes).or_where_not(mask, self);
+        pub fn hull(self, other: Self) -> Self =
+            self.with(self.low.min(other.low), self.high.max(other.high));
+        pub fn smaller(self, other: Self) -> Self =
+            self.with(self.low.min(other.low), self.high.min(other.high));
+        pub fn larger(self, other: Self) -> Self =
+            self.with(self.low.max(other.low), self.high.max(other.high));
+        /// The largest |x|.
+        pub fn magnitude(&self) -> L::Real = self.low.abs().max(self.high.abs());
+        /// The smallest |x|.
+        pub fn mignitude(&self) -> L::Real = self.low.max(-self.high).max(self.lanes.real(0.0));
+        pub fn absolute(self) -> Self = self.with(self.mignitude(), self.magnitude());
+        pub fn squared(self) -> Self = self.absolute().nonnegative_product(self.absolute());
     }
 
     /// Lane by lane `self` where the mask is true, else `other`.
     #[inline(always)]
     pub fn or_where_not(self, mask: L::Mask, other: Self) -> Self {
-        let l = self.lanes;
-        Self::new(
-            l,
-            l.select(mask, self.low, other.low),
-            l.select(mask, self.high, other.high),
-        )
-    }
-
-    #[inline(always)]
-    pub fn whole_where(self, mask: L::Mask) -> Self {
-        Self::whole(self.lanes).or_where_not(mask, self)
+        let select = inlined!(|a: L::Real, b: L::Real| self.lanes.select(mask, a, b));
+        self.with(select(self.low, other.low), select(self.high, other.high))
     }
 
     /// Where 0 may be among the numbers.
@@ -120,53 +112,11 @@ impl<L: DoubleLanes> Interval<L> {
         !(self.low.gt(zero) | self.high.lt(zero))
     }
 
+    /// Where 0 is the only number.
     #[inline(always)]
-    pub fn hull(self, other: Self) -> Self {
-        Self::new(
-            self.lanes,
-            self.low.min(other.low),
-            self.high.max(other.high),
-        )
-    }
-
-    #[inline(always)]
-    pub fn magnitude(&self) -> L::Real {
-        self.low.abs().max(self.high.abs())
-    }
-
-    /// The smallest |x|.
-    #[inline(always)]
-    pub fn mignitude(&self) -> L::Real {
+    pub fn is_zero(&self) -> L::Mask {
         let zero = self.lanes.real(0.0);
-        self.low.max(-self.high).max(zero)
-    }
-
-    #[inline(always)]
-    pub fn absolute(self) -> Self {
-        Self::new(self.lanes, self.mignitude(), self.magnitude())
-    }
-
-    #[inline(always)]
-    pub fn smaller(self, other: Self) -> Self {
-        Self::new(
-            self.lanes,
-            self.low.min(other.low),
-            self.high.min(other.high),
-        )
-    }
-
-    #[inline(always)]
-    pub fn larger(self, other: Self) -> Self {
-        Self::new(
-            self.lanes,
-            self.low.max(other.low),
-            self.high.max(other.high),
-        )
-    }
-
-    #[inline(always)]
-    pub fn squared(self) -> Self {
-        self.absolute().nonnegative_product(self.absolute())
+        self.low.same(zero) & self.high.same(zero)
     }
 
     /// √x of what is not negative in x.
@@ -187,7 +137,7 @@ impl<L: DoubleLanes> Interval<L> {
         } else {
             (self.low, self.high)
         };
-        Self::new(l, down(l, a * l.real(c)), up(l, b * l.real(c)))
+        Self::outward(l, a * l.real(c), b * l.real(c))
     }
 
     /// x · y for two intervals without negative numbers.
@@ -263,12 +213,7 @@ impl<L: DoubleLanes> Add for Interval<L> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        let l = self.lanes;
-        Self::new(
-            l,
-            down(l, self.low + other.low),
-            up(l, self.high + other.high),
-        )
+        Self::outward(self.lanes, self.low + other.low, self.high + other.high)
     }
 }
 
@@ -276,29 +221,17 @@ impl<L: DoubleLanes> Sub for Interval<L> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        let l = self.lanes;
-        Self::new(
-            l,
-            down(l, self.low - other.high),
-            up(l, self.high - other.low),
-        )
+        Self::outward(self.lanes, self.low - other.high, self.high - other.low)
     }
 }
 
 impl<L: DoubleLanes> Mul for Interval<L> {
     type Output = Self;
     #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        Self::around(
-            self.lanes,
-            [
-                self.low * other.low,
-                self.low * other.high,
-                self.high * other.low,
-                self.high * other.high,
-            ],
-            STEP,
-        )
+    fn mul(self, Self { low, high, .. }: Self) -> Self {
+        let [a, b] = [self.low * low, self.low * high];
+        let [c, d] = [self.high * low, self.high * high];
+        Self::around(self.lanes, [a, b, c, d], STEP)
     }
 }
 
@@ -307,26 +240,16 @@ impl<L: DoubleLanes> Div for Interval<L> {
     /// The whole line where the divisor may be 0.
     #[inline(always)]
     fn div(self, other: Self) -> Self {
-        Self::around(
-            self.lanes,
-            [
-                self.low / other.low,
-                self.low / other.high,
-                self.high / other.low,
-                self.high / other.high,
-            ],
-            STEP,
-        )
-        .whole_where(other.may_be_zero())
+        let (low, high) = (other.low, other.high);
+        let [a, b] = [self.low / low, self.low / high];
+        let [c, d] = [self.high / low, self.high / high];
+        Self::around(self.lanes, [a, b, c, d], STEP).whole_where(other.may_be_zero())
     }
 }
 
 impl<L: DoubleLanes> Neg for Interval<L> {
     type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self::new(self.lanes, -self.high, -self.low)
-    }
+    methods! { fn neg(self) -> Self = self.with(-self.high, -self.low); }
 }
 
 /// The narrowest bounds in f64 of an exact rational; the whole line beyond the range of f64.
@@ -349,7 +272,7 @@ fn at_most(y: f64, x: &BigRational) -> bool {
     BigRational::from_float(y).is_some_and(|y| y <= *x)
 }
 
-/// Which lanes of an evaluation are to be taken with care.
+/// Lanes of an evaluation in which the function may be undefined or jump.
 #[derive(Debug, Clone, Copy)]
 pub struct Domain<L: DoubleLanes> {
     /// The function may be undefined or jump somewhere in the interval.

@@ -8,7 +8,7 @@
 
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, LN_2, LOG2_E, SQRT_2};
 
-use super::functions::{self, COS, SIN, in_quadrant, polynomial};
+use super::functions::{self, ARCTAN, COS, SIN, in_quadrant, over_factorials, polynomial};
 use super::instructions::DoubleLanes;
 use super::interval::{Domain, Interval, down, lowered, raised, up};
 use super::lanes::{Mask, Real};
@@ -41,22 +41,7 @@ fn increasing<L: DoubleLanes>(l: L, low: L::Real, high: L::Real) -> Interval<L> 
 /// The power of two is applied in two halves, so that over- and underflow are rounded once.
 #[inline(always)]
 fn exp_kernel<L: DoubleLanes>(l: L, x: L::Real) -> L::Real {
-    const EXP: [f64; 14] = [
-        1.0,
-        1.0,
-        1.0 / 2.0,
-        1.0 / 6.0,
-        1.0 / 24.0,
-        1.0 / 120.0,
-        1.0 / 720.0,
-        1.0 / 5_040.0,
-        1.0 / 40_320.0,
-        1.0 / 362_880.0,
-        1.0 / 3_628_800.0,
-        1.0 / 39_916_800.0,
-        1.0 / 479_001_600.0,
-        1.0 / 6_227_020_800.0,
-    ];
+    const EXP: [f64; 14] = over_factorials(0, 1, 1.0);
     // e⁻⁷⁴⁶ rounds to 0 and e⁷¹⁰ to ∞, and the widening bounds what lies beyond.
     let x = x.max(l.real(-746.0)).min(l.real(710.0));
     let k = (x * l.real(LOG2_E)).round();
@@ -93,41 +78,23 @@ fn sine_kernel<L: DoubleLanes>(l: L, x: L::Real) -> (L::Real, L::Real, L::Real) 
 #[inline(always)]
 fn atan_kernel<L: DoubleLanes>(l: L, x: L::Real) -> L::Real {
     const TAN_PI_8: f64 = SQRT_2 - 1.0;
-    const ATAN: [f64; 21] = {
-        let mut series = [0.0; 21];
-        let mut k = 0;
-        while k < 21 {
-            let c = 1.0 / (2 * k + 1) as f64;
-            series[k] = if k % 2 == 0 { c } else { -c };
-            k += 1;
-        }
-        series
-    };
     let one = l.real(1.0);
     let a = x.abs();
     let (middle, large) = (a.gt(l.real(TAN_PI_8)), a.gt(l.real(SQRT_2 + 1.0)));
     let numerator = l.select(large, -one, l.select(middle, a - one, a));
     let denominator = l.select(large, a, l.select(middle, a + one, one));
     let z = numerator / denominator;
-    let series = polynomial(l, z * z, &ATAN) * z;
-    let constant = l.select(
-        large,
-        l.real(FRAC_PI_2),
-        l.select(middle, l.real(FRAC_PI_4), l.real(0.0)),
-    );
+    let series = polynomial(l, z * z, &ARCTAN) * z;
+    let constant = l.select(middle, l.real(FRAC_PI_4), l.real(0.0));
+    let constant = l.select(large, l.real(FRAC_PI_2), constant);
     (constant + series).copysign(x)
 }
 
 /// sinh x for |x| ≤ 1: the series to x¹⁷ leaves 1/19! = 0.08u; 2u by Horner.
 #[inline(always)]
 fn small_sinh_kernel<L: DoubleLanes>(l: L, x: L::Real) -> L::Real {
-    let mut series = SIN;
-    let mut i = 1;
-    while i < series.len() {
-        series[i] = series[i].abs();
-        i += 2;
-    }
-    polynomial(l, x * x, &series) * x
+    const SINH: [f64; 9] = over_factorials(1, 2, 1.0);
+    polynomial(l, x * x, &SINH) * x
 }
 
 impl<L: DoubleLanes> Interval<L> {
@@ -140,9 +107,7 @@ impl<L: DoubleLanes> Interval<L> {
 
     #[inline(always)]
     pub fn quotient_noted(self, other: Self, domain: &mut Domain<L>) -> Self {
-        let zero = self.lanes.real(0.0);
-        let nothing = other.low.same(zero) & other.high.same(zero);
-        domain.note(other.may_be_zero(), nothing);
+        domain.note(other.may_be_zero(), other.is_zero());
         self / other
     }
 
@@ -179,6 +144,13 @@ impl<L: DoubleLanes> Interval<L> {
         )
     }
 
+    /// Where an angle may be beyond [`LARGEST_ANGLE`].
+    #[inline(always)]
+    fn is_huge_angle(&self) -> L::Mask {
+        let largest = self.lanes.real(LARGEST_ANGLE);
+        !(self.low.ge(-largest) & self.high.le(largest))
+    }
+
     #[inline(always)]
     pub fn sine_cosine(self) -> (Self, Self) {
         let l = self.lanes;
@@ -200,7 +172,7 @@ impl<L: DoubleLanes> Interval<L> {
             let shift = l.real(shift);
             up(l, to - shift).floor().ge(down(l, from - shift))
         });
-        let huge = !(self.low.ge(l.real(-LARGEST_ANGLE)) & self.high.le(l.real(LARGEST_ANGLE)));
+        let huge = self.is_huge_angle();
         let bounded = inlined!(|(low, high): (L::Real, L::Real), top: f64, bottom: f64| {
             let low = l.select(huge | passes(bottom), -one, low);
             let high = l.select(huge | passes(top), one, high);
@@ -222,7 +194,7 @@ impl<L: DoubleLanes> Interval<L> {
         let radius = up(l, (middle - self.low).max(self.high - middle));
         let (s, c, k) = sine_kernel(l, middle);
         let slack = up(l, k.abs() * l.real(1.0 / (1u128 << 105) as f64) + radius);
-        let huge = !(self.low.ge(l.real(-LARGEST_ANGLE)) & self.high.le(l.real(LARGEST_ANGLE)));
+        let huge = self.is_huge_angle();
         let around = inlined!(|x: L::Real| {
             let low = down(l, lowered(l, x, WIDENING) - slack);
             let high = up(l, raised(l, x, WIDENING) + slack);
@@ -241,7 +213,7 @@ impl<L: DoubleLanes> Interval<L> {
         let half = l.real(0.5);
         let from = down(l, lowered(l, self.low * half_turns, WIDENING) - half);
         let to = up(l, raised(l, self.high * half_turns, WIDENING) - half);
-        let huge = !(self.low.ge(l.real(-LARGEST_ANGLE)) & self.high.le(l.real(LARGEST_ANGLE)));
+        let huge = self.is_huge_angle();
         let pole = huge | to.floor().ge(from);
         domain.note(pole, l.mask(false));
         let at = inlined!(|x: L::Real| {
@@ -320,17 +292,12 @@ impl<L: DoubleLanes> Interval<L> {
             let constant = l.select(y.lt(zero), -constant, constant);
             constant + angle
         });
-        let corners = [
-            corner(x.low, y.low),
-            corner(x.low, y.high),
-            corner(x.high, y.low),
-            corner(x.high, y.high),
-        ];
-        let Self { low, high, .. } = Self::around(l, corners, 2.0 * WIDENING);
+        let [a, b] = [corner(x.low, y.low), corner(x.low, y.high)];
+        let [c, d] = [corner(x.high, y.low), corner(x.high, y.high)];
+        let Self { low, high, .. } = Self::around(l, [a, b, c, d], 2.0 * WIDENING);
         let origin = x.may_be_zero() & y.may_be_zero();
         let cut = !x.low.ge(zero) & y.low.lt(zero) & !y.high.lt(zero);
-        let nothing = x.low.same(zero) & x.high.same(zero) & y.low.same(zero) & y.high.same(zero);
-        domain.note(origin | cut, nothing);
+        domain.note(origin | cut, x.is_zero() & y.is_zero());
         let pi = l.real(PI[1]);
         let anywhere = Self::new(l, -pi, pi);
         let angle = Self::new(l, low.max(-pi), high.min(pi));
@@ -376,11 +343,8 @@ impl<L: DoubleLanes> Interval<L> {
             // Beyond 20 tanh is within 1e-17 of 1; the clipping keeps the quotient finite.
             let twice = Self::point(l, x.abs().min(l.real(20.0)) * l.real(2.0));
             let far = unit - unit.times_number(2.0) / (twice.exponential() + unit);
-            let far = Self::new(
-                l,
-                far.low,
-                l.select(x.abs().gt(l.real(20.0)), one, far.high),
-            );
+            let far_high = l.select(x.abs().gt(l.real(20.0)), one, far.high);
+            let far = Self::new(l, far.low, far_high);
             let far = (-far).or_where_not(x.lt(l.real(0.0)), far);
             near.or_where_not(small, far)
         });

@@ -4,7 +4,7 @@
 //! Together the two sides hold every value that the function has where it is defined.
 
 use super::instructions::DoubleLanes;
-use super::interval::{Domain, Interval, down, up};
+use super::interval::{Domain, Interval, up};
 use super::lanes::Real;
 
 impl<L: DoubleLanes> Interval<L> {
@@ -23,7 +23,7 @@ impl<L: DoubleLanes> Interval<L> {
         domain.note(l.mask(false), !y.high.gt(zero));
         let low = x.low / l.select(x.low.ge(zero), y.high, nearest);
         let high = x.high / l.select(x.high.ge(zero), nearest, y.high);
-        Self::new(l, down(l, low), up(l, high))
+        Self::outward(l, low, high)
     }
 
     /// tan x after the last pole (`side`: the values up to that at the upper end) or before the

@@ -15,62 +15,34 @@ pub struct Jet<L: DoubleLanes> {
 }
 
 impl<L: DoubleLanes> Jet<L> {
-    #[inline(always)]
-    pub fn negated(self) -> Self {
-        Self {
-            value: -self.value,
-            slope: -self.slope,
-        }
-    }
-
-    #[inline(always)]
-    pub fn plus(self, other: Self) -> Self {
-        Self {
-            value: self.value + other.value,
-            slope: self.slope + other.slope,
-        }
-    }
-
-    #[inline(always)]
-    pub fn minus(self, other: Self) -> Self {
-        Self {
-            value: self.value - other.value,
-            slope: self.slope - other.slope,
-        }
+    methods! {
+        pub fn new(value: Interval<L>, slope: Interval<L>) -> Self = Self { value, slope };
+        pub fn negated(self) -> Self = Self::new(-self.value, -self.slope);
+        pub fn plus(self, other: Self) -> Self =
+            Self::new(self.value + other.value, self.slope + other.slope);
+        pub fn minus(self, other: Self) -> Self =
+            Self::new(self.value - other.value, self.slope - other.slope);
+        /// A function of this value whose derivative is `rate`.
+        pub fn chained(self, value: Interval<L>, rate: Interval<L>) -> Self =
+            Self::new(value, self.slope * rate);
     }
 
     #[inline(always)]
     pub fn times(self, other: Self) -> Self {
-        Self {
-            value: self.value * other.value,
-            slope: self.slope * other.value + self.value * other.slope,
-        }
+        let slope = self.slope * other.value + self.value * other.slope;
+        Self::new(self.value * other.value, slope)
     }
 
     #[inline(always)]
     pub fn quotient(self, other: Self, domain: &mut Domain<L>) -> Self {
         let value = self.value.quotient_noted(other.value, domain);
-        Self {
-            value,
-            slope: (self.slope - value * other.slope) / other.value,
-        }
-    }
-
-    /// a value with slope a′ · `rate`.
-    #[inline(always)]
-    pub fn chained(self, value: Interval<L>, rate: Interval<L>) -> Self {
-        Self {
-            value,
-            slope: self.slope * rate,
-        }
+        Self::new(value, (self.slope - value * other.slope) / other.value)
     }
 
     #[inline(always)]
     pub fn whole_power(self, n: i32, domain: &mut Domain<L>) -> Self {
         if n < 0 {
-            let zero = self.value.lanes.real(0.0);
-            let nothing = self.value.low.same(zero) & self.value.high.same(zero);
-            domain.note(self.value.may_be_zero(), nothing);
+            domain.note(self.value.may_be_zero(), self.value.is_zero());
         }
         let rate = match n {
             0 => Interval::splat(self.value.lanes, [0.0, 0.0]),
@@ -88,24 +60,17 @@ impl<L: DoubleLanes> Jet<L> {
         let magnitude = self.slope.magnitude();
         let kink = Interval::new(l, -magnitude, magnitude);
         let smooth = (-self.slope).or_where_not(self.value.high.lt(zero), self.slope);
-        Self {
-            value: self.value.absolute(),
-            slope: kink.or_where_not(self.value.may_be_zero(), smooth),
-        }
+        let slope = kink.or_where_not(self.value.may_be_zero(), smooth);
+        Self::new(self.value.absolute(), slope)
     }
 
     #[inline(always)]
     pub fn smaller(self, other: Self) -> Self {
+        let (x, y) = (self.value, other.value);
         let both = self.slope.hull(other.slope);
-        let slope = self
-            .slope
-            .or_where_not(self.value.high.lt(other.value.low), both);
-        Self {
-            value: self.value.smaller(other.value),
-            slope: other
-                .slope
-                .or_where_not(other.value.high.lt(self.value.low), slope),
-        }
+        let slope = self.slope.or_where_not(x.high.lt(y.low), both);
+        let slope = other.slope.or_where_not(y.high.lt(x.low), slope);
+        Self::new(x.smaller(y), slope)
     }
 
     #[inline(always)]

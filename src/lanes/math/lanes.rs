@@ -14,19 +14,6 @@ use super::instructions::Instructions;
 use super::lookup::SMALL;
 use super::scalar_lane::{One, OneSingle};
 
-/// Methods of lanes that are functions of another name.
-macro_rules! delegate {
-    ($(fn $method:ident(self $(, $other:ident)*) -> $result:ty = $function:path;)*) => {
-        $(
-            #[inline(always)]
-            fn $method(self $(, $other: Self)*) -> $result {
-                $function(self $(, $other)*)
-            }
-        )*
-    };
-}
-pub(super) use delegate;
-
 mod double;
 mod single;
 mod vector;
@@ -73,22 +60,16 @@ macro_rules! scalar {
             type Packet<S: Simd> = $packet<S>;
             type One = $one;
             const ONE: $one = $one;
+            methods! {
+                fn from_f64(x: f64) -> Self = x as $scalar;
+                fn to_f64(self) -> f64 = self.into();
+                fn fused(self, a: Self, b: Self) -> Self = $scalar::mul_add(self, a, b);
+                fn root(self) -> Self = $scalar::sqrt(self);
+                fn larger(self, other: Self) -> Self = if self > other { self } else { other };
+            }
             #[inline(always)]
             fn packet<S: Simd>(simd: S) -> $packet<S> {
                 $packet(simd)
-            }
-            #[inline(always)]
-            fn from_f64(x: f64) -> Self {
-                x as $scalar
-            }
-            delegate! {
-                fn to_f64(self) -> f64 = f64::from;
-                fn fused(self, a, b) -> Self = $scalar::mul_add;
-                fn root(self) -> Self = $scalar::sqrt;
-            }
-            #[inline(always)]
-            fn larger(self, other: Self) -> Self {
-                if self > other { self } else { other }
             }
         }
     };

@@ -13,6 +13,10 @@ pub struct Ray {
 }
 
 impl Ray {
+    pub fn at(&self, t: f64) -> DVec3 {
+        self.origin + self.direction * t
+    }
+
     /// Whether all numbers are finite and the direction is not zero: only such a ray hits.
     pub fn is_valid(&self) -> bool {
         self.origin.is_finite() && self.direction.is_finite() && self.direction != DVec3::ZERO

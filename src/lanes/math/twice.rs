@@ -9,11 +9,11 @@ use super::instructions::Instructions;
 use super::lanes::{Int, Lanes, Mask, Real};
 use super::lookup::SMALL;
 
-/// Lanes of twice as many.
+/// Two packets as one, of twice as many lanes.
 #[derive(Clone, Copy)]
 pub struct Twice<L>(pub L);
 
-/// Values of both packets.
+/// The values of the first packet and of the second.
 #[derive(Clone, Copy)]
 pub struct Pair<V>(pub V, pub V);
 
@@ -39,29 +39,19 @@ operator!(BitXor, bitxor);
 
 impl<V: Neg<Output = V>> Neg for Pair<V> {
     type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(-self.0, -self.1)
-    }
+    methods! { fn neg(self) -> Self = Self(-self.0, -self.1); }
 }
 
 impl<V: Not<Output = V>> Not for Pair<V> {
     type Output = Self;
-    #[inline(always)]
-    fn not(self) -> Self {
-        Self(!self.0, !self.1)
-    }
+    methods! { fn not(self) -> Self = Self(!self.0, !self.1); }
 }
 
 impl<M: Mask> Mask for Pair<M> {
     const COUNT: u32 = 2 * M::COUNT;
-    #[inline(always)]
-    fn any(self) -> bool {
-        (self.0 | self.1).any()
-    }
-    #[inline(always)]
-    fn bits(self) -> u32 {
-        self.0.bits() | self.1.bits() << M::COUNT
+    methods! {
+        fn any(self) -> bool = (self.0 | self.1).any();
+        fn bits(self) -> u32 = self.0.bits() | self.1.bits() << M::COUNT;
     }
 }
 
@@ -80,9 +70,9 @@ macro_rules! forward {
 
 impl<R: Real> Real for Pair<R> {
     type Mask = Pair<R::Mask>;
-    #[inline(always)]
-    fn mul_add(self, a: Self, b: Self) -> Self {
-        Self(self.0.mul_add(a.0, b.0), self.1.mul_add(a.1, b.1))
+    methods! {
+        fn mul_add(self, a: Self, b: Self) -> Self =
+            Self(self.0.mul_add(a.0, b.0), self.1.mul_add(a.1, b.1));
     }
     forward! {
         fn sqrt(self) -> Itself;
@@ -110,17 +100,13 @@ impl<I: Int> Int for Pair<I> {
         fn same(self, other) -> Truth;
         fn below(self, other) -> Truth;
     }
-    #[inline(always)]
-    fn left(self, by: u32) -> Self {
-        Self(self.0.left(by), self.1.left(by))
-    }
-    #[inline(always)]
-    fn right(self, by: u32) -> Self {
-        Self(self.0.right(by), self.1.right(by))
+    methods! {
+        fn left(self, by: u32) -> Self = Self(self.0.left(by), self.1.left(by));
+        fn right(self, by: u32) -> Self = Self(self.0.right(by), self.1.right(by));
     }
 }
 
-/// Methods that give both packets the same.
+/// Methods that give the same value to both packets.
 macro_rules! alike {
     ($(fn $method:ident(x: $type:ty) -> $result:ident;)*) => {
         $(
@@ -133,7 +119,7 @@ macro_rules! alike {
     };
 }
 
-/// Methods that are done to one packet after the other.
+/// Methods that are applied to one packet after the other.
 macro_rules! each {
     ($(fn $method:ident($($x:ident: $type:ident),*) -> $result:ident;)*) => {
         $(
@@ -142,6 +128,50 @@ macro_rules! each {
                 Pair(self.0.$method($($x.0),*), self.0.$method($($x.1),*))
             }
         )*
+    };
+}
+
+/// What is done alike to reals and to integers.
+macro_rules! values {
+    (
+        $value:ident of $scalar:ty:
+        $load:ident, $store:ident, $lookup:ident, $lane:ident, $with_lane:ident, $select:ident,
+        $compress:ident
+    ) => {
+        methods! {
+            fn $load(self, from: &[$scalar]) -> Self::$value =
+                Pair(self.0.$load(from), self.0.$load(&from[L::COUNT..]));
+            fn $lookup(self, table: &[$scalar; SMALL], index: Self::Int) -> Self::$value =
+                Pair(self.0.$lookup(table, index.0), self.0.$lookup(table, index.1));
+        }
+        each! { fn $select(m: Mask, a: $value, b: $value) -> $value; }
+        #[inline(always)]
+        fn $store(self, x: Self::$value, to: &mut [$scalar]) {
+            self.0.$store(x.0, to);
+            self.0.$store(x.1, &mut to[L::COUNT..]);
+        }
+        #[inline(always)]
+        fn $lane(self, x: Self::$value, i: usize) -> $scalar {
+            if i < L::COUNT {
+                self.0.$lane(x.0, i)
+            } else {
+                self.0.$lane(x.1, i - L::COUNT)
+            }
+        }
+        #[inline(always)]
+        fn $with_lane(self, x: Self::$value, i: usize, value: $scalar) -> Self::$value {
+            if i < L::COUNT {
+                Pair(self.0.$with_lane(x.0, i, value), x.1)
+            } else {
+                Pair(x.0, self.0.$with_lane(x.1, i - L::COUNT, value))
+            }
+        }
+        #[inline(always)]
+        fn $compress(self, x: Self::$value, keep: Self::Mask, to: &mut [$scalar]) {
+            self.0.$compress(x.0, keep.0, to);
+            let kept = keep.0.bits().count_ones() as usize;
+            self.0.$compress(x.1, keep.1, &mut to[kept..]);
+        }
     };
 }
 
@@ -154,13 +184,9 @@ impl<L: Lanes> Lanes for Twice<L> {
     const COUNT: usize = 2 * L::COUNT;
     const UNIFORM_BITS: u32 = L::UNIFORM_BITS;
 
-    #[inline(always)]
-    fn instructions(self) -> Instructions {
-        self.0.instructions()
-    }
-    #[inline(always)]
-    fn narrow(self) -> L::Narrow {
-        self.0.narrow()
+    methods! {
+        fn instructions(self) -> Instructions = self.0.instructions();
+        fn narrow(self) -> L::Narrow = self.0.narrow();
     }
     #[inline(always)]
     fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
@@ -179,70 +205,12 @@ impl<L: Lanes> Lanes for Twice<L> {
             self.0.mask_from_bits(bits >> L::COUNT),
         )
     }
-    #[inline(always)]
-    fn load(self, from: &[Self::Scalar]) -> Self::Real {
-        Pair(self.0.load(from), self.0.load(&from[L::COUNT..]))
-    }
-    #[inline(always)]
-    fn store(self, x: Self::Real, to: &mut [Self::Scalar]) {
-        self.0.store(x.0, to);
-        self.0.store(x.1, &mut to[L::COUNT..]);
-    }
-    #[inline(always)]
-    fn load_int(self, from: &[u32]) -> Self::Int {
-        Pair(self.0.load_int(from), self.0.load_int(&from[L::COUNT..]))
-    }
-    #[inline(always)]
-    fn store_int(self, x: Self::Int, to: &mut [u32]) {
-        self.0.store_int(x.0, to);
-        self.0.store_int(x.1, &mut to[L::COUNT..]);
-    }
-    #[inline(always)]
-    fn lookup(self, table: &[Self::Scalar; SMALL], index: Self::Int) -> Self::Real {
-        Pair(self.0.lookup(table, index.0), self.0.lookup(table, index.1))
-    }
-    #[inline(always)]
-    fn lookup_int(self, table: &[u32; SMALL], index: Self::Int) -> Self::Int {
-        Pair(
-            self.0.lookup_int(table, index.0),
-            self.0.lookup_int(table, index.1),
-        )
-    }
-    #[inline(always)]
-    fn lane(self, x: Self::Real, i: usize) -> Self::Scalar {
-        if i < L::COUNT {
-            self.0.lane(x.0, i)
-        } else {
-            self.0.lane(x.1, i - L::COUNT)
-        }
-    }
-    #[inline(always)]
-    fn int_lane(self, x: Self::Int, i: usize) -> u32 {
-        if i < L::COUNT {
-            self.0.int_lane(x.0, i)
-        } else {
-            self.0.int_lane(x.1, i - L::COUNT)
-        }
-    }
-    #[inline(always)]
-    fn with_lane(self, x: Self::Real, i: usize, value: Self::Scalar) -> Self::Real {
-        if i < L::COUNT {
-            Pair(self.0.with_lane(x.0, i, value), x.1)
-        } else {
-            Pair(x.0, self.0.with_lane(x.1, i - L::COUNT, value))
-        }
-    }
-    #[inline(always)]
-    fn with_int_lane(self, x: Self::Int, i: usize, value: u32) -> Self::Int {
-        if i < L::COUNT {
-            Pair(self.0.with_int_lane(x.0, i, value), x.1)
-        } else {
-            Pair(x.0, self.0.with_int_lane(x.1, i - L::COUNT, value))
-        }
+    values! { Real of Self::Scalar: load, store, lookup, lane, with_lane, select, compress_into }
+    values! {
+        Int of u32:
+        load_int, store_int, lookup_int, int_lane, with_int_lane, select_int, compress_int_into
     }
     each! {
-        fn select(m: Mask, a: Real, b: Real) -> Real;
-        fn select_int(m: Mask, a: Int, b: Int) -> Int;
         fn truncate(x: Real) -> Int;
         fn to_real(x: Int) -> Real;
         fn power_of_two(e: Real) -> Real;
@@ -251,17 +219,5 @@ impl<L: Lanes> Lanes for Twice<L> {
     fn split_exponent(self, x: Self::Real) -> (Self::Real, Self::Real) {
         let (low, high) = (self.0.split_exponent(x.0), self.0.split_exponent(x.1));
         (Pair(low.0, high.0), Pair(low.1, high.1))
-    }
-    #[inline(always)]
-    fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [Self::Scalar]) {
-        self.0.compress_into(x.0, keep.0, to);
-        let kept = keep.0.bits().count_ones() as usize;
-        self.0.compress_into(x.1, keep.1, &mut to[kept..]);
-    }
-    #[inline(always)]
-    fn compress_int_into(self, x: Self::Int, keep: Self::Mask, to: &mut [u32]) {
-        self.0.compress_int_into(x.0, keep.0, to);
-        let kept = keep.0.bits().count_ones() as usize;
-        self.0.compress_int_into(x.1, keep.1, &mut to[kept..]);
     }
 }

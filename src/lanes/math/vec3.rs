@@ -25,14 +25,11 @@ impl<R: Real> Vec3<R> {
         Self::new(l.real(v.x), l.real(v.y), l.real(v.z))
     }
 
-    #[inline(always)]
-    pub fn dot(self, b: Self) -> R {
-        self.x.mul_add(b.x, self.y.mul_add(b.y, self.z * b.z))
-    }
-
-    #[inline(always)]
-    pub fn length_squared(self) -> R {
-        self.dot(self)
+    methods! {
+        pub fn dot(self, b: Self) -> R = self.x.mul_add(b.x, self.y.mul_add(b.y, self.z * b.z));
+        pub fn length_squared(self) -> R = self.dot(self);
+        pub fn scale(self, s: R) -> Self = Self::new(self.x * s, self.y * s, self.z * s);
+        pub fn max_abs(self) -> R = self.x.abs().max(self.y.abs()).max(self.z.abs());
     }
 
     #[inline(always)]
@@ -42,11 +39,6 @@ impl<R: Real> Vec3<R> {
             self.z.mul_add(b.x, -(self.x * b.z)),
             self.x.mul_add(b.y, -(self.y * b.x)),
         )
-    }
-
-    #[inline(always)]
-    pub fn scale(self, s: R) -> Self {
-        Self::new(self.x * s, self.y * s, self.z * s)
     }
 
     /// `self + d · t`.
@@ -68,11 +60,6 @@ impl<R: Real> Vec3<R> {
     pub fn reciprocal<L: Lanes<Real = R>>(self, l: L) -> Self {
         let one = l.real(1.0);
         Self::new(one / self.x, one / self.y, one / self.z)
-    }
-
-    #[inline(always)]
-    pub fn max_abs(self) -> R {
-        self.x.abs().max(self.y.abs()).max(self.z.abs())
     }
 
     /// Lane by lane `a` where the mask is true, else `b`.
@@ -125,10 +112,7 @@ operator!(Mul, mul);
 
 impl<R: Real> Neg for Vec3<R> {
     type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self::new(-self.x, -self.y, -self.z)
-    }
+    methods! { fn neg(self) -> Self = Self::new(-self.x, -self.y, -self.z); }
 }
 
 /// An affine map whose rows are scalars, applied to lanes.
@@ -183,11 +167,16 @@ impl<T: super::lanes::Scalar> Rows<T> {
         }
     }
 
+    /// The numbers at three places, the same in each lane.
+    #[inline(always)]
+    fn splat<L: Lanes<Scalar = T>>(&self, l: L, places: [(usize, usize); 3]) -> Vec3<L::Real> {
+        let at = inlined!(|(i, j): (usize, usize)| l.splat(self.rows[i][j]));
+        Vec3::new(at(places[0]), at(places[1]), at(places[2]))
+    }
+
     #[inline(always)]
     pub fn row_dot<L: Lanes<Scalar = T>>(&self, l: L, i: usize, v: Vec3<L::Real>) -> L::Real {
-        let r = &self.rows[i];
-        l.splat(r[0])
-            .mul_add(v.x, l.splat(r[1]).mul_add(v.y, l.splat(r[2]) * v.z))
+        self.splat(l, [(i, 0), (i, 1), (i, 2)]).dot(v)
     }
 
     #[inline(always)]
@@ -221,13 +210,7 @@ impl<T: super::lanes::Scalar> Rows<T> {
     /// Transpose of the linear part times a vector: normals, when these rows are the inverse.
     #[inline(always)]
     pub fn transposed<L: Lanes<Scalar = T>>(&self, l: L, v: Vec3<L::Real>) -> Vec3<L::Real> {
-        let column = inlined!(|j: usize| {
-            l.splat(self.rows[0][j]).mul_add(
-                v.x,
-                l.splat(self.rows[1][j])
-                    .mul_add(v.y, l.splat(self.rows[2][j]) * v.z),
-            )
-        });
+        let column = inlined!(|j: usize| self.splat(l, [(0, j), (1, j), (2, j)]).dot(v));
         Vec3::new(column(0), column(1), column(2))
     }
 }

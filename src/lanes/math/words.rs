@@ -1,14 +1,14 @@
-//! Numbers of one or two f64 a lane, with what their rounding costs at most.
+//! Numbers of one or two f64 a lane, each with a bound of its rounding errors.
 
 use super::lanes::{Lanes, Real};
 
-/// Eight f64, as memory keeps them.
+/// Eight f64 in memory, one cache line.
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(align(64))]
 pub struct Row(pub [f64; 8]);
 
 pub trait Word<L: Lanes<Scalar = f64>>: Copy {
-    /// How many rows it takes.
+    /// Rows that a packet of such numbers takes in memory.
     const ROWS: usize;
     /// Error of a sum or product, relative to the sum or product of the operands' magnitudes.
     const UNIT: f64;
@@ -22,7 +22,7 @@ pub trait Word<L: Lanes<Scalar = f64>>: Copy {
     fn fused(self, a: Self, b: Self) -> Self;
     /// The nearest f64.
     fn head(self) -> L::Real;
-    /// self where the mask is true, else other.
+    /// Lane by lane `a` where the mask is true, else `b`.
     fn select(l: L, mask: L::Mask, a: Self, b: Self) -> Self;
     fn load(l: L, rows: &[Row], i: usize) -> Self;
     fn store(self, l: L, rows: &mut [Row], i: usize);
@@ -47,63 +47,39 @@ pub struct Pair<L: Lanes> {
 impl<L: Lanes<Scalar = f64>> Word<L> for Plain<L> {
     const ROWS: usize = 1;
     const UNIT: f64 = f64::EPSILON / 2.0;
-    #[inline(always)]
-    fn real(_: L, x: L::Real) -> Self {
-        Self(x)
-    }
-    #[inline(always)]
-    fn constant(l: L, parts: [f64; 2]) -> Self {
-        Self(l.real(parts[0]))
-    }
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        Self(self.0 + other.0)
-    }
-    #[inline(always)]
-    fn minus(self, other: Self) -> Self {
-        Self(self.0 - other.0)
-    }
-    #[inline(always)]
-    fn times(self, other: Self) -> Self {
-        Self(self.0 * other.0)
-    }
-    #[inline(always)]
-    fn times_real(self, x: L::Real) -> Self {
-        Self(self.0 * x)
-    }
-    #[inline(always)]
-    fn fused(self, a: Self, b: Self) -> Self {
-        Self(self.0.mul_add(a.0, b.0))
-    }
-    #[inline(always)]
-    fn head(self) -> L::Real {
-        self.0
-    }
-    #[inline(always)]
-    fn select(l: L, mask: L::Mask, a: Self, b: Self) -> Self {
-        Self(l.select(mask, a.0, b.0))
-    }
-    #[inline(always)]
-    fn load(l: L, rows: &[Row], i: usize) -> Self {
-        Self(l.load(&rows[i].0))
-    }
-    #[inline(always)]
-    fn store(self, l: L, rows: &mut [Row], i: usize) {
-        l.store(self.0, &mut rows[i].0);
+    methods! {
+        fn real(_: L, x: L::Real) -> Self = Self(x);
+        fn constant(l: L, parts: [f64; 2]) -> Self = Self(l.real(parts[0]));
+        fn plus(self, other: Self) -> Self = Self(self.0 + other.0);
+        fn minus(self, other: Self) -> Self = Self(self.0 - other.0);
+        fn times(self, other: Self) -> Self = Self(self.0 * other.0);
+        fn times_real(self, x: L::Real) -> Self = Self(self.0 * x);
+        fn fused(self, a: Self, b: Self) -> Self = Self(self.0.mul_add(a.0, b.0));
+        fn head(self) -> L::Real = self.0;
+        fn select(l: L, mask: L::Mask, a: Self, b: Self) -> Self = Self(l.select(mask, a.0, b.0));
+        fn load(l: L, rows: &[Row], i: usize) -> Self = Self(l.load(&rows[i].0));
+        fn store(self, l: L, rows: &mut [Row], i: usize) -> () = l.store(self.0, &mut rows[i].0);
     }
 }
 
 impl<L: Lanes<Scalar = f64>> Pair<L> {
-    /// high + low as a normalised pair.
+    methods! {
+        fn new(high: L::Real, low: L::Real) -> Self = Self { high, low };
+        pub fn tail(self) -> L::Real = self.low;
+    }
+
+    /// The exact sum of two numbers, as a normalised pair.
     #[inline(always)]
     pub fn normalised(high: L::Real, low: L::Real) -> Self {
         let (high, low) = two_sum::<L>(high, low);
-        Self { high, low }
+        Self::new(high, low)
     }
 
+    /// The same where |e| ≤ 3u |p|, which makes the fast sum exact (Dekker 1971).
     #[inline(always)]
-    pub fn tail(self) -> L::Real {
-        self.low
+    fn fast_normalised(p: L::Real, e: L::Real) -> Self {
+        let high = p + e;
+        Self::new(high, e - (high - p))
     }
 }
 
@@ -118,19 +94,12 @@ fn two_sum<L: Lanes>(a: L::Real, b: L::Real) -> (L::Real, L::Real) {
 impl<L: Lanes<Scalar = f64>> Word<L> for Pair<L> {
     const ROWS: usize = 2;
     const UNIT: f64 = 2.0 * f64::EPSILON * f64::EPSILON;
-    #[inline(always)]
-    fn real(l: L, x: L::Real) -> Self {
-        Self {
-            high: x,
-            low: l.real(0.0),
-        }
-    }
-    #[inline(always)]
-    fn constant(l: L, parts: [f64; 2]) -> Self {
-        Self {
-            high: l.real(parts[0]),
-            low: l.real(parts[1]),
-        }
+    methods! {
+        fn real(l: L, x: L::Real) -> Self = Self::new(x, l.real(0.0));
+        fn constant(l: L, [high, low]: [f64; 2]) -> Self = Self::new(l.real(high), l.real(low));
+        fn minus(self, other: Self) -> Self = self.plus(Self::new(-other.high, -other.low));
+        fn fused(self, a: Self, b: Self) -> Self = self.times(a).plus(b);
+        fn head(self) -> L::Real = self.high;
     }
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
@@ -138,56 +107,25 @@ impl<L: Lanes<Scalar = f64>> Word<L> for Pair<L> {
         Self::normalised(s, e + (self.low + other.low))
     }
     #[inline(always)]
-    fn minus(self, other: Self) -> Self {
-        self.plus(Self {
-            high: -other.high,
-            low: -other.low,
-        })
-    }
-    #[inline(always)]
     fn times(self, other: Self) -> Self {
         let p = self.high * other.high;
         let e = self.high.mul_add(other.high, -p);
         let e = self.high.mul_add(other.low, e);
-        let e = self.low.mul_add(other.high, e);
-        // |e| ≤ 3u |p|: the fast renormalisation is exact (Dekker 1971).
-        let high = p + e;
-        Self {
-            high,
-            low: e - (high - p),
-        }
+        Self::fast_normalised(p, self.low.mul_add(other.high, e))
     }
     #[inline(always)]
     fn times_real(self, x: L::Real) -> Self {
         let p = self.high * x;
-        let e = self.low.mul_add(x, self.high.mul_add(x, -p));
-        let high = p + e;
-        Self {
-            high,
-            low: e - (high - p),
-        }
-    }
-    #[inline(always)]
-    fn fused(self, a: Self, b: Self) -> Self {
-        self.times(a).plus(b)
-    }
-    #[inline(always)]
-    fn head(self) -> L::Real {
-        self.high
+        Self::fast_normalised(p, self.low.mul_add(x, self.high.mul_add(x, -p)))
     }
     #[inline(always)]
     fn select(l: L, mask: L::Mask, a: Self, b: Self) -> Self {
-        Self {
-            high: l.select(mask, a.high, b.high),
-            low: l.select(mask, a.low, b.low),
-        }
+        let low = l.select(mask, a.low, b.low);
+        Self::new(l.select(mask, a.high, b.high), low)
     }
     #[inline(always)]
     fn load(l: L, rows: &[Row], i: usize) -> Self {
-        Self {
-            high: l.load(&rows[2 * i].0),
-            low: l.load(&rows[2 * i + 1].0),
-        }
+        Self::new(l.load(&rows[2 * i].0), l.load(&rows[2 * i + 1].0))
     }
     #[inline(always)]
     fn store(self, l: L, rows: &mut [Row], i: usize) {

@@ -2,8 +2,8 @@
 
 use super::Slot;
 use super::kind::Sampler;
-use super::sequence::{CameraSample, Identity, Sequence};
-use super::sobol::{Sobol, coordinate};
+use super::sequence::{Identity, Sequence};
+use super::sobol::Sobol;
 use crate::math::lanes::Lanes;
 
 /// Every path through its pixel's centre.
@@ -20,41 +20,23 @@ impl Sampler for Center {
     }
 
     #[inline(always)]
-    fn camera<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
-        let zero = l.real(0.0);
-        CameraSample {
-            pixel: [l.real(0.5); 2],
-            wavelength: coordinate(sequence, l, id, 2),
-            lens: if lens {
-                [
-                    coordinate(sequence, l, id, 3),
-                    coordinate(sequence, l, id, 4),
-                ]
-            } else {
-                [zero; 2]
-            },
-        }
+    fn camera<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>) -> ([L::Real; 2], L::Real) {
+        let (_, wavelength) = Sobol::camera(sequence, l, id);
+        ([l.real(0.5); 2], wavelength)
     }
 
     #[inline(always)]
-    fn single<L: Lanes>(
-        sequence: &Sequence,
-        l: L,
-        id: Identity<L>,
-        slot: Slot,
-        depth: L::Int,
-    ) -> L::Real {
-        Sobol::single(sequence, l, id, slot, depth)
+    fn lens<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>) -> [L::Real; 2] {
+        Sobol::lens(sequence, l, id)
     }
 
     #[inline(always)]
-    fn pair<L: Lanes>(
-        sequence: &Sequence,
-        l: L,
-        id: Identity<L>,
-        slot: Slot,
-        depth: L::Int,
-    ) -> [L::Real; 2] {
-        Sobol::pair(sequence, l, id, slot, depth)
+    fn single<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, slot: Slot) -> L::Real {
+        Sobol::single(sequence, l, id, slot)
+    }
+
+    #[inline(always)]
+    fn pair<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, slot: Slot) -> [L::Real; 2] {
+        Sobol::pair(sequence, l, id, slot)
     }
 }

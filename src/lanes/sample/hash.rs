@@ -4,7 +4,7 @@ use rand::Rng;
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
 
-use crate::math::lanes::{Int, Lanes, inlined};
+use crate::math::lanes::{Int, Lanes};
 
 /// A bijection of 32-bit numbers with good avalanche: two multiply–xorshift rounds with the
 /// constants that Wellons found by search (C. Wellons, "Prospecting for Hash Functions", 2018,
@@ -22,10 +22,7 @@ pub fn mix<L: Lanes>(l: L, x: L::Int) -> L::Int {
 /// Rendering", JCGT 9(3), 2020, `pcg4d`: a PCG step on each word, then cross-mixing).
 #[inline(always)]
 pub fn pcg4d<L: Lanes>(l: L, v: [L::Int; 4]) -> [L::Int; 4] {
-    let step = inlined(
-        #[inline(always)]
-        |x: L::Int| x.times(l.int(1_664_525)).plus(l.int(1_013_904_223)),
-    );
+    let step = inlined!(|x: L::Int| x.times(l.int(1_664_525)).plus(l.int(1_013_904_223)));
     let [x, y, z, w] = v;
     let (mut x, mut y, mut z, mut w) = (step(x), step(y), step(z), step(w));
     x = x.plus(y.times(w));

@@ -1,7 +1,7 @@
 //! What a sampler is and draws, and the list of them.
 
 use super::Slot;
-use super::sequence::{CameraSample, Identity, Sequence};
+use super::sequence::{Identity, Sequence};
 use crate::math::lanes::Lanes;
 
 /// A way to choose the points of a pixel: numbers in [0, 1) by sample and slot.
@@ -22,120 +22,45 @@ pub trait Sampler {
         index
     }
 
-    /// The numbers of a camera ray; those of the lens only where there is one.
+    /// The numbers of a camera ray without a lens: position in the pixel and wavelength.
     #[inline(always)]
-    fn camera<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
-        let depth = l.int(0);
-        CameraSample {
-            pixel: Self::pair(sequence, l, id, Slot::Pixel, depth),
-            wavelength: Self::single(sequence, l, id, Slot::Wavelength, depth),
-            lens: if lens {
-                Self::pair(sequence, l, id, Slot::Lens, depth)
-            } else {
-                [l.real(0.0); 2]
-            },
-        }
+    fn camera<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>) -> ([L::Real; 2], L::Real) {
+        let pixel = Self::pair(sequence, l, id, Slot::Pixel);
+        (pixel, Self::single(sequence, l, id, Slot::Wavelength))
     }
 
-    /// One number of a slot at a bounce.
-    fn single<L: Lanes>(
-        sequence: &Sequence,
-        l: L,
-        id: Identity<L>,
-        slot: Slot,
-        depth: L::Int,
-    ) -> L::Real;
-
-    /// Two numbers of a slot at a bounce.
-    fn pair<L: Lanes>(
-        sequence: &Sequence,
-        l: L,
-        id: Identity<L>,
-        slot: Slot,
-        depth: L::Int,
-    ) -> [L::Real; 2];
-
-    /// Two numbers each of slots 2i and 2i + 1 at a bounce.
+    /// The position on the lens.
     #[inline(always)]
-    fn two_pairs<L: Lanes>(
-        sequence: &Sequence,
-        l: L,
-        id: Identity<L>,
-        [slot, second]: [Slot; 2],
-        depth: L::Int,
-    ) -> [[L::Real; 2]; 2] {
+    fn lens<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>) -> [L::Real; 2] {
+        Self::pair(sequence, l, id, Slot::Lens)
+    }
+
+    /// One number of a slot.
+    fn single<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, slot: Slot) -> L::Real;
+
+    /// Two numbers of a slot.
+    fn pair<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, slot: Slot) -> [L::Real; 2];
+
+    /// Two numbers each of [`Slot::Light`] and [`Slot::Bsdf`], which are wanted together.
+    #[inline(always)]
+    fn light_and_bsdf<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>) -> [[L::Real; 2]; 2] {
         [
-            sequence.pair(l, id, slot, depth),
-            sequence.pair(l, id, second, depth),
+            sequence.pair(l, id, Slot::Light),
+            sequence.pair(l, id, Slot::Bsdf),
         ]
     }
 }
 
-macro_rules! samplers {
-    ($($kind:ident in $module:ident,)*) => {
-        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-        pub enum SamplerKind {
-            $(
-                #[doc = concat!("See [`", stringify!($kind), "`](super::", stringify!($module), "::", stringify!($kind), ").")]
-                $kind,
-            )*
-        }
-
-        impl SamplerKind {
-            /// All of them, the usual one first.
-            pub const ALL: &'static [Self] = &[$(Self::$kind,)*];
-        }
-
-        /// Evaluates an item of a kind's type.
-        macro_rules! of {
-            ($self:expr, $item:ident) => {
-                match $self {
-                    $($crate::sample::SamplerKind::$kind => $crate::sample::$module::$kind::$item,)*
-                }
-            };
-            ($self:expr, $item:ident $item_arguments:tt) => {
-                match $self {
-                    $(
-                        $crate::sample::SamplerKind::$kind => {
-                            $crate::sample::$module::$kind::$item $item_arguments
-                        }
-                    )*
-                }
-            };
-        }
-        pub(super) use of;
-    };
+kinds! {
+    SamplerKind of Sampler {
+        Sobol in sobol,
+        Independent in independent,
+        Stratified in stratified,
+        Center in center,
+    }
+    fn name(self) -> &'static str = NAME;
+    fn words(self) -> &'static str = WORDS;
+    fn needs_count(self) -> bool = NEEDS_COUNT;
+    fn is_centred(self) -> bool = CENTRED;
 }
-
-samplers! {
-    Sobol in sobol,
-    Independent in independent,
-    Stratified in stratified,
-    Center in center,
-}
-
-impl SamplerKind {
-    /// Its name in scene files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        of!(self, NAME)
-    }
-
-    /// [`Sampler::WORDS`].
-    #[must_use]
-    pub fn words(self) -> &'static str {
-        of!(self, WORDS)
-    }
-
-    /// [`Sampler::NEEDS_COUNT`].
-    #[must_use]
-    pub fn needs_count(self) -> bool {
-        of!(self, NEEDS_COUNT)
-    }
-
-    /// [`Sampler::CENTRED`].
-    #[must_use]
-    pub fn is_centred(self) -> bool {
-        of!(self, CENTRED)
-    }
-}
+pub(super) use of;

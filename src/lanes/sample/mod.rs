@@ -18,7 +18,7 @@ pub mod warp;
 
 pub use kind::SamplerKind;
 
-use crate::math::lanes::Lanes;
+use crate::math::lanes::{Int, Lanes};
 
 /// Names of pairs of random dimensions. A bounce's slots repeat with [`Slot::STRIDE`]; slots 2i and
 /// 2i + 1 are often wanted together.
@@ -49,8 +49,7 @@ impl Slot {
 
     /// The number that names this slot at a bounce.
     #[inline(always)]
-    pub fn at<L: Lanes>(self, l: L, depth: L::Int) -> L::Int {
-        use crate::math::lanes::Int;
-        depth.times(l.int(Self::STRIDE)).plus(l.int(self as u32))
+    pub fn at<L: Lanes>(self, l: L, bounce: L::Int) -> L::Int {
+        bounce.times(l.int(Self::STRIDE)).plus(l.int(self as u32))
     }
 }

@@ -5,7 +5,7 @@ use crate::math::lanes::{Int, Lanes, WIDEST};
 /// How the samples of a pixel are shared out among its independent scrambles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Replicates {
-    /// This many, in turn.
+    /// This many, which get samples in turn.
     Fixed(u32),
     /// Two, then four, then eight as samples come: sample i belongs to the same replicate however
     /// many follow, so that stopping early changes no sample.

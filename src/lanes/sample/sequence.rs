@@ -21,13 +21,16 @@ pub struct Sequence {
     pub(super) strata: [u32; 2],
 }
 
-/// What identifies one sample in lanes: which scramble, and which of its points.
+/// What identifies one sample in lanes: which scramble, which of its points, and which of their
+/// coordinates.
 #[derive(Clone, Copy)]
 pub struct Identity<L: Lanes> {
     /// Hash of seed, pixel and replicate.
     pub key: L::Int,
     /// Index within the replicate, as [`Sampler::index`] has it.
     pub index: L::Int,
+    /// The bounce that numbers are for, from 0.
+    pub bounce: L::Int,
 }
 
 /// The numbers that a camera ray needs.
@@ -66,7 +69,7 @@ impl Sequence {
         }
     }
 
-    /// Identity of samples of pixels.
+    /// Identity of samples of pixels, at their cameras.
     #[inline(always)]
     pub fn identity<L: Lanes>(
         &self,
@@ -79,62 +82,48 @@ impl Sequence {
         Identity {
             key: self.keys.pixel(l, x, y, replicate),
             index: of!(self.kind, index(l, index)),
+            bounce: l.int(0),
         }
     }
 
-    /// [`Sampler::camera`].
+    /// [`Sampler::camera`], and [`Sampler::lens`] where there is one.
     #[inline(never)]
     pub fn camera<L: Lanes>(&self, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
-        l.vectorize(
-            #[inline(always)]
-            || of!(self.kind, camera(self, l, id, lens)),
-        )
-    }
-
-    /// [`Sampler::pair`].
-    #[inline(never)]
-    pub fn pair<L: Lanes>(&self, l: L, id: Identity<L>, slot: Slot, depth: L::Int) -> [L::Real; 2] {
-        l.vectorize(
-            #[inline(always)]
-            || of!(self.kind, pair(self, l, id, slot, depth)),
-        )
-    }
-
-    /// [`Sampler::two_pairs`].
-    #[inline(never)]
-    pub fn two_pairs<L: Lanes>(
-        &self,
-        l: L,
-        id: Identity<L>,
-        slots: [Slot; 2],
-        depth: L::Int,
-    ) -> [[L::Real; 2]; 2] {
-        let [slot, second] = slots;
-        debug_assert!((slot as u32).is_multiple_of(2) && second as u32 == slot as u32 + 1);
-        l.vectorize(
-            #[inline(always)]
-            || of!(self.kind, two_pairs(self, l, id, slots, depth)),
-        )
+        l.vectorize(inlined!(|| {
+            let (pixel, wavelength) = of!(self.kind, camera(self, l, id));
+            let mut sample = CameraSample {
+                pixel,
+                wavelength,
+                lens: [l.real(0.0); 2],
+            };
+            if lens {
+                sample.lens = of!(self.kind, lens(self, l, id));
+            }
+            sample
+        }))
     }
 
     /// [`Sampler::single`].
     #[inline(never)]
-    pub fn single<L: Lanes>(&self, l: L, id: Identity<L>, slot: Slot, depth: L::Int) -> L::Real {
-        l.vectorize(
-            #[inline(always)]
-            || of!(self.kind, single(self, l, id, slot, depth)),
-        )
+    pub fn single<L: Lanes>(&self, l: L, id: Identity<L>, slot: Slot) -> L::Real {
+        l.vectorize(inlined!(|| of!(self.kind, single(self, l, id, slot))))
     }
 
-    /// A hash of a sample's key and a slot at a bounce.
+    /// [`Sampler::pair`].
+    #[inline(never)]
+    pub fn pair<L: Lanes>(&self, l: L, id: Identity<L>, slot: Slot) -> [L::Real; 2] {
+        l.vectorize(inlined!(|| of!(self.kind, pair(self, l, id, slot))))
+    }
+
+    /// [`Sampler::light_and_bsdf`].
+    #[inline(never)]
+    pub fn light_and_bsdf<L: Lanes>(&self, l: L, id: Identity<L>) -> [[L::Real; 2]; 2] {
+        l.vectorize(inlined!(|| of!(self.kind, light_and_bsdf(self, l, id))))
+    }
+
+    /// A hash of a sample's key and a slot at its bounce.
     #[inline(always)]
-    pub(super) fn slot_seed<L: Lanes>(
-        &self,
-        l: L,
-        id: Identity<L>,
-        slot: Slot,
-        depth: L::Int,
-    ) -> L::Int {
-        mix(l, id.key ^ slot.at(l, depth).times(l.int(0x9e37_79b9)))
+    pub(super) fn slot_seed<L: Lanes>(&self, l: L, id: Identity<L>, slot: Slot) -> L::Int {
+        mix(l, id.key ^ slot.at(l, id.bounce).times(l.int(0x9e37_79b9)))
     }
 }

@@ -7,7 +7,7 @@
 use super::Slot;
 use super::hash::mix;
 use super::kind::Sampler;
-use super::sequence::{CameraSample, Identity, Sequence};
+use super::sequence::{Identity, Sequence};
 use crate::math::lanes::{Int, Lanes};
 
 /// Owen-scrambled Sobol' points.
@@ -25,45 +25,28 @@ impl Sampler for Sobol {
 
     /// Pixel, wavelength and lens are stratified together, as one point of five dimensions.
     #[inline(always)]
-    fn camera<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, lens: bool) -> CameraSample<L> {
-        CameraSample {
-            pixel: [
-                coordinate(sequence, l, id, 0),
-                coordinate(sequence, l, id, 1),
-            ],
-            wavelength: coordinate(sequence, l, id, 2),
-            lens: if lens {
-                [
-                    coordinate(sequence, l, id, 3),
-                    coordinate(sequence, l, id, 4),
-                ]
-            } else {
-                [l.real(0.0); 2]
-            },
-        }
+    fn camera<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>) -> ([L::Real; 2], L::Real) {
+        let coordinate = inlined!(|dimension: usize| coordinate(sequence, l, id, dimension));
+        ([coordinate(0), coordinate(1)], coordinate(2))
     }
 
     #[inline(always)]
-    fn single<L: Lanes>(
-        sequence: &Sequence,
-        l: L,
-        id: Identity<L>,
-        slot: Slot,
-        depth: L::Int,
-    ) -> L::Real {
-        let base = sequence.slot_seed(l, id, slot, depth);
+    fn lens<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>) -> [L::Real; 2] {
+        [
+            coordinate(sequence, l, id, 3),
+            coordinate(sequence, l, id, 4),
+        ]
+    }
+
+    #[inline(always)]
+    fn single<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, slot: Slot) -> L::Real {
+        let base = sequence.slot_seed(l, id, slot);
         l.uniform(first(l, shuffled(l, id.index, base), base))
     }
 
     #[inline(always)]
-    fn pair<L: Lanes>(
-        sequence: &Sequence,
-        l: L,
-        id: Identity<L>,
-        slot: Slot,
-        depth: L::Int,
-    ) -> [L::Real; 2] {
-        let base = sequence.slot_seed(l, id, slot, depth);
+    fn pair<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, slot: Slot) -> [L::Real; 2] {
+        let base = sequence.slot_seed(l, id, slot);
         let index = shuffled(l, id.index, base);
         let second = scrambled(
             l,
@@ -91,12 +74,7 @@ const CAMERA: [(Slot, u32); DIMENSIONS] = [
 
 /// A coordinate of a camera sample's point.
 #[inline(always)]
-pub fn coordinate<L: Lanes>(
-    sequence: &Sequence,
-    l: L,
-    id: Identity<L>,
-    dimension: usize,
-) -> L::Real {
+fn coordinate<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, dimension: usize) -> L::Real {
     let (slot, component) = CAMERA[dimension];
     let step = 0x9e37_79b9u32.wrapping_mul(2 * slot as u32 + component + 1);
     let seed = mix(l, id.key.plus(l.int(step)));

@@ -16,16 +16,10 @@ impl Sampler for Stratified {
     const NEEDS_COUNT: bool = true;
 
     #[inline(always)]
-    fn single<L: Lanes>(
-        sequence: &Sequence,
-        l: L,
-        id: Identity<L>,
-        slot: Slot,
-        depth: L::Int,
-    ) -> L::Real {
-        let seed = sequence.slot_seed(l, id, slot, depth);
+    fn single<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, slot: Slot) -> L::Real {
+        let seed = sequence.slot_seed(l, id, slot);
         let stratum = permute(l, id.index, sequence.points, seed);
-        let [jitter, _] = two(l, id, slot, depth);
+        let [jitter, _] = two(l, id, slot);
         below_one(
             l,
             (l.to_real(stratum) + jitter) / l.real(sequence.points.into()),
@@ -33,17 +27,11 @@ impl Sampler for Stratified {
     }
 
     #[inline(always)]
-    fn pair<L: Lanes>(
-        sequence: &Sequence,
-        l: L,
-        id: Identity<L>,
-        slot: Slot,
-        depth: L::Int,
-    ) -> [L::Real; 2] {
+    fn pair<L: Lanes>(sequence: &Sequence, l: L, id: Identity<L>, slot: Slot) -> [L::Real; 2] {
         let [across, down] = sequence.strata;
-        let seed = sequence.slot_seed(l, id, slot, depth);
+        let seed = sequence.slot_seed(l, id, slot);
         let stratum = permute(l, id.index, across * down, seed);
-        let [u, v] = two(l, id, slot, depth);
+        let [u, v] = two(l, id, slot);
         let position = l.to_real(stratum);
         // The quotient is at least ½/across away from the integer that would be rounded to; above
         // 2²³ strata the sum itself may be rounded up to the next row, which shows in the column.

@@ -34,7 +34,7 @@ pub fn cosine_hemisphere<L: Lanes>(l: L, u: L::Real, v: L::Real) -> Vec3<L::Real
     Vec3::new(x, y, squared.max(least).sqrt())
 }
 
-/// cos θ/π.
+/// The density of [`cosine_hemisphere`]: cos θ/π, sr⁻¹.
 #[inline(always)]
 pub fn cosine_hemisphere_pdf<L: Lanes>(l: L, cosine: L::Real) -> L::Real {
     cosine * l.real(std::f64::consts::FRAC_1_PI)

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use super::kind::{Canonical, Emitter, Length, Question};
-use super::lanes::part::{Part, PartKind};
-use super::lanes::{self, LaneRay, LaneShape};
+use super::kind::{Canonical, Emitter, LaneQuestion, Length};
+use super::lanes::part::Part;
+use super::lanes::{LaneRay, LaneShape, LaneSpan};
 use super::line::{LocalRay, Span};
-use super::slab::{Along, LaneSlab, Slab, coordinate, cut, lane_slab, reach, slab};
+use super::slab::{LaneSlab, Slab, cut, reach, slab};
 use crate::math::lanes::{Lanes, Mask, Real, Scalar};
 use crate::math::number::Number;
 use crate::math::vec3::Vec3;
@@ -27,10 +27,6 @@ impl Canonical for Cube {
     const EMITTER: Emitter = Emitter::Cube;
     const FACES: &'static [(usize, &'static [f64])] =
         &[(0, &[-1.0, 1.0]), (1, &[-1.0, 1.0]), (2, &[-1.0, 1.0])];
-
-    fn corners() -> Option<[DVec3; 2]> {
-        Some([-DVec3::ONE, DVec3::ONE])
-    }
 
     fn half_range(along: DVec3) -> f64 {
         along.abs().element_sum()
@@ -59,8 +55,8 @@ impl Canonical for Cube {
     /// Three slabs (Kay and Kajiya 1986), each crossing with its bound; the cube is hit for certain
     /// when the latest possible entry is before the earliest possible exit.
     #[inline(always)]
-    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
-        let Question {
+    fn lane_span<L: Lanes>(l: L, question: &LaneQuestion<'_, L>) -> LaneSpan<L> {
+        let LaneQuestion {
             shape, ray, asked, ..
         } = *question;
         let slabs = slabs(l, shape, ray);
@@ -73,8 +69,7 @@ impl Canonical for Cube {
     }
 
     fn parts<T: Scalar>(shape: &LaneShape<T>) -> Vec<Part<T>> {
-        let faces = |axis| shape.plane(axis, PartKind::Faces);
-        [0, 1, 2].map(faces).to_vec()
+        shape.faces.to_vec()
     }
 
     /// The axis of the face.
@@ -98,33 +93,28 @@ impl Canonical for Cube {
 /// The three slabs of the lines in local coordinates.
 #[inline(always)]
 fn slabs<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> [LaneSlab<L>; 3] {
-    let axis = inlined!(|i| {
+    let slab = inlined!(|i| {
         let local = shape.inverse.row(l, i, ray.origin, ray.direction);
-        lane_slab(l, &coordinate(l, shape, ray, i, local))
+        LaneSlab::new(l, shape, ray, i, local)
     });
-    [axis(0), axis(1), axis(2)]
+    [slab(0), slab(1), slab(2)]
 }
 
 /// The same where some line may run along a slab.
 #[cold]
 #[inline(never)]
-fn with_parallels<L: Lanes>(
-    l: L,
-    shape: &LaneShape<L::Scalar>,
-    ray: &LaneRay<L>,
-) -> lanes::Span<L> {
+fn with_parallels<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> LaneSpan<L> {
     l.vectorize(inlined!(|| {
         let mut slabs = slabs(l, shape, ray);
-        let o = shape.inverse.point(l, ray.origin);
-        let d = shape.inverse.vector(l, ray.direction);
+        let [x, y, z] = &slabs;
+        let o = Vec3::new(x.origin, y.origin, z.origin);
+        let d = Vec3::new(x.direction, y.direction, z.direction);
         let reach = reach(l, shape, ray, o, d);
         let (mut lost, mut outside) = (l.mask(false), l.mask(false));
-        let components = [(o.x, d.x), (o.y, d.y), (o.z, d.z)];
-        for (i, (slab, local)) in slabs.iter_mut().zip(components).enumerate() {
-            let coordinate = coordinate(l, shape, ray, i, local);
-            let along: Along<L> = slab.settle(l, &coordinate, reach);
-            lost = lost | along.lost;
-            outside = outside | along.outside;
+        for slab in &mut slabs {
+            let (is_lost, is_outside) = slab.settle(l, reach);
+            lost = lost | is_lost;
+            outside = outside | is_outside;
         }
         joined(l, &slabs, lost, outside)
     }))
@@ -136,7 +126,7 @@ fn joined<L: Lanes>(
     [x, y, z]: &[LaneSlab<L>; 3],
     lost: L::Mask,
     outside: L::Mask,
-) -> lanes::Span<L> {
+) -> LaneSpan<L> {
     let near = x.near.later(y.near).later(z.near);
     let far = x.far.earlier(y.far).earlier(z.far);
     // One part a pair of faces.
@@ -154,7 +144,7 @@ fn joined<L: Lanes>(
             z.far.low.lt(x.far.low.min(y.far.low)),
         ),
     ];
-    lanes::Span {
+    LaneSpan {
         near,
         far,
         hit: near.high.lt(far.low) & !lost & !outside,

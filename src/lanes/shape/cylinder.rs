@@ -4,10 +4,10 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::kind::{Canonical, Emitter, Length, Question};
-use super::lanes::{self, LaneShape, LaneSurface};
+use super::kind::{Canonical, Emitter, LaneQuestion, Length};
+use super::lanes::{LaneShape, LaneSpan, LaneSurface};
 use super::line::{Crossing, Fraction, LocalRay, Span};
-use super::slab::{Along, Slab, coordinate, cut, lane_slab, reach, slab};
+use super::slab::{LaneSlab, Slab, cut, reach, slab};
 use super::sphere::round_span;
 use crate::math::lanes::{Lanes, Mask, Real};
 use crate::math::number::{Number, dot};
@@ -22,10 +22,6 @@ impl Canonical for Cylinder {
     const EMITTER: Emitter = Emitter::Cylinder;
     const FACES: &'static [(usize, &'static [f64])] = &[(2, &[-1.0, 1.0])];
     const ROUND: Option<usize> = Some(2);
-
-    fn corners() -> Option<[DVec3; 2]> {
-        Some([-DVec3::ONE, DVec3::ONE])
-    }
 
     fn half_range(along: DVec3) -> f64 {
         along.truncate().length() + along.z.abs()
@@ -55,8 +51,8 @@ impl Canonical for Cylinder {
     /// The side as a circle about the foot of the perpendicular in the plane (bounds as for the
     /// sphere, with √2 in place of √3), the caps as a slab.
     #[inline(always)]
-    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
-        let Question {
+    fn lane_span<L: Lanes>(l: L, question: &LaneQuestion<'_, L>) -> LaneSpan<L> {
+        let LaneQuestion {
             shape, ray, asked, ..
         } = *question;
         let one = l.real(1.0);
@@ -88,23 +84,18 @@ impl Canonical for Cylinder {
             side.miss = (side.miss & !parallel) | (parallel & outside);
         }
 
-        let height = coordinate(l, shape, ray, 2, (o.z, d.z));
-        let mut caps = lane_slab(l, &height);
-        let nowhere = l.mask(false);
-        let mut along = Along::<L> {
-            lost: nowhere,
-            outside: nowhere,
-        };
+        let mut caps = LaneSlab::new(l, shape, ray, 2, (o.z, d.z));
+        let (mut lost, mut outside) = (l.mask(false), l.mask(false));
         if (caps.parallel & asked).any() {
-            along = caps.settle(l, &height, reach(l, shape, ray, o, d));
+            (lost, outside) = caps.settle(l, reach(l, shape, ray, o, d));
         }
         let near = side.near.later(caps.near);
         let far = side.far.earlier(caps.far);
-        lanes::Span {
+        LaneSpan {
             near,
             far,
-            hit: side.hit & near.high.lt(far.low) & !along.lost & !along.outside,
-            miss: side.miss | along.outside | (side.hit & near.low.gt(far.high) & !along.lost),
+            hit: side.hit & near.high.lt(far.low) & !lost & !outside,
+            miss: side.miss | outside | (side.hit & near.low.gt(far.high) & !lost),
             parts: [l.int(0); 2],
         }
     }

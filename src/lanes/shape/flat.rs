@@ -4,9 +4,9 @@ use std::cmp::Ordering;
 
 use glam::{DVec2, DVec3};
 
-use super::kind::{Canonical, Emitter, Length, Question};
+use super::kind::{Canonical, Emitter, LaneQuestion, Length};
 use super::lanes::part::{Part, PartKind};
-use super::lanes::{self, Enclosure, LaneShape};
+use super::lanes::{Enclosure, LaneShape, LaneSpan};
 use super::line::{Crossing, Feature, Fraction, LocalRay, Span};
 use crate::math::affine::Affine;
 use crate::math::lanes::{Lanes, Real, Scalar};
@@ -75,7 +75,7 @@ impl<F: Flat> Canonical for F {
         let Some(crossing) = crossing(ray)? else {
             return Some(None);
         };
-        let covered = F::covers(ray, &crossing.fraction(ray)?)?;
+        let covered = F::covers(ray, &crossing.fraction(ray).ok()?)?;
         Some(covered.then_some(Span {
             near: crossing,
             far: crossing,
@@ -85,8 +85,8 @@ impl<F: Flat> Canonical for F {
     /// t = −o_z/d_z within 2 (E_z + |t| D_z)/|d_z| + 5u|t| (first order, doubled for the rest while
     /// D_z ≤ |d_z|/4, which [`margins`] sees to; 5u pay for the arithmetic up to the rounded ends).
     #[inline(always)]
-    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
-        let Question { shape, ray, .. } = *question;
+    fn lane_span<L: Lanes>(l: L, question: &LaneQuestion<'_, L>) -> LaneSpan<L> {
+        let LaneQuestion { shape, ray, .. } = *question;
         let u = <L::Scalar as Scalar>::ROUNDOFF;
         let row = inlined!(|i: usize| shape.inverse.row(l, i, ray.origin, ray.direction));
         let ((ox, dx), (oy, dy), (oz, dz)) = (row(0), row(1), row(2));
@@ -103,7 +103,7 @@ impl<F: Flat> Canonical for F {
         let e = distance.mul_add(z_error, shape.origin_error(l, ray, 2)) * l.real(2.0);
         let error = e.mul_add(reciprocal.abs(), distance * l.real(5.0 * u));
         let at = Enclosure::about(t, error);
-        lanes::Span {
+        LaneSpan {
             near: at,
             far: at,
             hit: inside,
@@ -113,7 +113,11 @@ impl<F: Flat> Canonical for F {
     }
 
     fn parts<T: Scalar>(shape: &LaneShape<T>) -> Vec<Part<T>> {
-        vec![shape.plane(2, PartKind::Plane)]
+        vec![Part {
+            kind: PartKind::Plane,
+            half: T::default(),
+            ..shape.faces[2]
+        }]
     }
 
     /// The height made exact.
@@ -132,16 +136,12 @@ impl<F: Flat> Canonical for F {
 /// |d_z| > 4 D_z wherever the line is found inside; one twentieth pays for terms in u² and for the
 /// evaluation of the margin.
 pub fn margins<T: Scalar>(inverse: &Affine) -> [f64; 2] {
-    let sum = |i: usize| {
-        let r = &inverse.rows[i];
-        r[0].abs() + r[1].abs() + r[2].abs()
-    };
-    let shift = |i: usize| inverse.rows[i][3].abs();
+    let sum = inverse.abs().vector(DVec3::ONE);
+    let shift = inverse.translation().abs();
     let unit = 1.05 * T::ROUNDOFF;
     let across = |i: usize| {
-        let constant =
-            14.0 * (shift(i) * sum(2) + shift(2) * sum(i)) + 6.0 * sum(i) + 30.0 * sum(2);
-        [unit * constant, unit * 28.0 * sum(i) * sum(2)]
+        let constant = 14.0 * (shift[i] * sum.z + shift.z * sum[i]) + 6.0 * sum[i] + 30.0 * sum.z;
+        [unit * constant, unit * 28.0 * sum[i] * sum.z]
     };
     let (x, y) = (across(0), across(1));
     [x[0].max(y[0]), x[1].max(y[1])]

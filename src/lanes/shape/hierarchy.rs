@@ -56,10 +56,7 @@ impl Bounds {
     pub fn of_image(to_world: &Affine, low: DVec3, high: DVec3) -> Self {
         let centre = to_world.point((low + high) / 2.0);
         let half = (high - low) / 2.0;
-        let reach = to_world
-            .rows
-            .map(|row| row[0].abs() * half.x + row[1].abs() * half.y + row[2].abs() * half.z);
-        let reach = DVec3::from_array(reach);
+        let reach = to_world.abs().vector(half);
         Self {
             low: centre - reach,
             high: centre + reach,
@@ -72,13 +69,7 @@ impl Bounds {
     pub fn around_image(to_world: &Affine, low: DVec3, high: DVec3) -> Self {
         let image = Self::of_image(to_world, low, high);
         let farthest = low.abs().max(high.abs());
-        let error = DVec3::from_array(to_world.rows.map(|row| {
-            let magnitude = row[0].abs() * farthest.x
-                + row[1].abs() * farthest.y
-                + row[2].abs() * farthest.z
-                + row[3].abs();
-            16.0 * f64::ROUNDOFF * magnitude
-        }));
+        let error = 16.0 * f64::ROUNDOFF * to_world.abs().point(farthest);
         Self {
             low: image.low - error,
             high: image.high + error,
@@ -200,14 +191,6 @@ pub struct Descent<T> {
 }
 
 impl<T: Scalar> Descent<T> {
-    #[inline(always)]
-    pub fn new() -> Self {
-        Self {
-            stack: [(T::default(), 0); STACK],
-            length: 0,
-        }
-    }
-
     /// Puts the next ray at the root.
     #[inline(always)]
     pub fn restart(&mut self) {
@@ -230,8 +213,12 @@ impl<T: Scalar> Descent<T> {
 }
 
 impl<T: Scalar> Default for Descent<T> {
+    #[inline(always)]
     fn default() -> Self {
-        Self::new()
+        Self {
+            stack: [(T::default(), 0); STACK],
+            length: 0,
+        }
     }
 }
 

@@ -31,7 +31,7 @@ impl RayIndex {
     pub fn candidates(&self, ray: &Ray, t_max: f64) -> Vec<u32> {
         let inverse = ray.direction.to_array().map(|d| 1.0 / d);
         let ray = BoxRay::new(One, ray.origin.to_array(), inverse);
-        let mut descent = Descent::new();
+        let mut descent = Descent::default();
         descent.restart();
         let mut objects = self.unbounded.clone();
         while let Some(child) = self.boxes.next::<_, false>(One, &mut descent, &ray, t_max) {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::lanes::part::Part;
-use super::lanes::{self, LaneRay, LaneShape, LaneSurface};
+use super::lanes::{LaneRay, LaneShape, LaneSpan, LaneSurface};
 use super::line::{LocalRay, Span};
 use crate::math::lanes::{Lanes, Scalar};
 use crate::math::number::Number;
@@ -61,7 +61,7 @@ impl Length {
 
 /// The lines that a shape is asked about in lanes.
 #[derive(Clone, Copy)]
-pub struct Question<'a, L: Lanes> {
+pub struct LaneQuestion<'a, L: Lanes> {
     pub shape: &'a LaneShape<L::Scalar>,
     pub ray: &'a LaneRay<L>,
     /// Lanes whose answer counts.
@@ -87,7 +87,9 @@ pub trait Canonical {
     const ROUND: Option<usize> = None;
 
     /// Opposite corners of its box; `None` where it has no end.
-    fn corners() -> Option<[DVec3; 2]>;
+    fn corners() -> Option<[DVec3; 2]> {
+        Some([-DVec3::ONE, DVec3::ONE])
+    }
 
     /// Half the range of a · p over the shape, for a = `along`; the middle of the range is 0.
     fn half_range(along: DVec3) -> f64;
@@ -97,9 +99,9 @@ pub trait Canonical {
 
     /// The same in lanes, with bounds; lanes that these cannot decide are taken to the ladder. What is
     /// said of lanes that are not asked means nothing.
-    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L>;
+    fn lane_span<L: Lanes>(l: L, question: &LaneQuestion<'_, L>) -> LaneSpan<L>;
 
-    /// The parts, in the order in which [`lanes::Span`] numbers them.
+    /// The parts, in the order in which [`LaneSpan`] numbers them.
     fn parts<T: Scalar>(_shape: &LaneShape<T>) -> Vec<Part<T>> {
         vec![Part::other()]
     }
@@ -222,11 +224,11 @@ impl<T: Scalar> LaneShape<T> {
         ray: &LaneRay<L>,
         asked: L::Mask,
         limit: L::Real,
-    ) -> lanes::Span<L> {
+    ) -> LaneSpan<L> {
         let Some(kind) = self.kind else {
-            return lanes::Span::missed(l);
+            return LaneSpan::missed(l);
         };
-        let question = Question {
+        let question = LaneQuestion {
             shape: self,
             ray,
             asked,
@@ -243,7 +245,7 @@ impl<T: Scalar> LaneShape<T> {
         ray: &LaneRay<L>,
         asked: L::Mask,
         limit: L::Real,
-    ) -> lanes::Span<L> {
+    ) -> LaneSpan<L> {
         l.vectorize(inlined!(|| self.span(l, ray, asked, limit)))
     }
 

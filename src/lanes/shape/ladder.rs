@@ -1,11 +1,11 @@
 //! The ladder of precisions: a question is asked in f64, then in double-double, then exactly; the
-//! first rung that can tell answers.
+//! first tier that can tell answers.
 
 use std::cmp::Ordering;
 
 use super::line::LocalRay;
 use super::placed::SingularMatrix;
-use super::{Ray, Rung};
+use super::{Ray, Tier};
 use crate::math::affine::Affine;
 use crate::math::double_double::DoubleDouble;
 use crate::math::exact::Exact;
@@ -148,16 +148,16 @@ impl Ladder {
         })
     }
 
-    /// The first answer on the way up, and who gave it. The last rung always answers: the outer
+    /// The first answer on the way up, and who gave it. The last tier always answers: the outer
     /// `Option` is for the type checker alone, and callers read it as "no crossing".
-    pub fn climb<Q: Question>(&self, ray: &ScaledRay, question: &Q) -> Option<(Q::Answer, Rung)> {
+    pub fn climb<Q: Question>(&self, ray: &ScaledRay, question: &Q) -> Option<(Q::Answer, Tier)> {
         if let Some(answer) = question.ask(&self.double.local(ray)) {
-            return Some((answer, Rung::Double));
+            return Some((answer, Tier::Double));
         }
         if let Some(answer) = question.ask(&self.double_double.local(ray)) {
-            return Some((answer, Rung::DoubleDouble));
+            return Some((answer, Tier::DoubleDouble));
         }
         let answer = question.ask(&self.exact.local(ray))?;
-        Some((answer, Rung::Exact))
+        Some((answer, Tier::Exact))
     }
 }

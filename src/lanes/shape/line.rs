@@ -171,29 +171,28 @@ impl Crossing {
         }
     }
 
-    /// t as a fraction, for planes; `None` for quadrics.
-    pub fn fraction<N: Number>(&self, ray: &LocalRay<N>) -> Option<Fraction<N>> {
+    /// t as a fraction, for planes; for quadrics, the number of coordinates in their sum.
+    pub fn fraction<N: Number>(&self, ray: &LocalRay<N>) -> Result<Fraction<N>, usize> {
         match self.feature {
-            Feature::Round { .. } => None,
+            Feature::Round { dimensions } => Err(dimensions),
             // The direction goes up the axis where it leaves by a positive face or enters by a
             // negative one.
             Feature::Face { axis, positive } => {
-                Some(ray.plane(axis, Some(positive), positive == self.leaving))
+                Ok(ray.plane(axis, Some(positive), positive == self.leaving))
             }
-            Feature::Flat => Some(ray.plane(2, None, self.leaving)),
+            Feature::Flat => Ok(ray.plane(2, None, self.leaving)),
         }
     }
 
     /// Whether this crossing comes before, at or after t. A quadric's is known to exist.
     pub fn compare<N: Number>(&self, ray: &LocalRay<N>, t: &Fraction<N>) -> Option<Ordering> {
-        if let Some(own) = self.fraction(ray) {
-            return own.compare(t);
+        match self.fraction(ray) {
+            Ok(own) => own.compare(t),
+            Err(dimensions) => {
+                let (form, slope) = ray.radial(dimensions, t);
+                root_against(form.sign(), slope.sign(), self.leaving)
+            }
         }
-        let Feature::Round { dimensions } = self.feature else {
-            return None;
-        };
-        let (form, slope) = ray.radial(dimensions, t);
-        root_against(form.sign(), slope.sign(), self.leaving)
     }
 }
 

@@ -1,11 +1,9 @@
 //! Several objects: the closest hit, and whether anything is in the way.
 
-use std::cmp::Ordering;
-
 use super::ladder::ScaledRay;
 use super::line::Crossing;
 use super::question::Limits;
-use super::{Hit, Placed, Ray, Rung, Start, Tally};
+use super::{Hit, Placed, Ray, Start, Tally, Tier};
 use crate::math::number::{Bounded, Number};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,121 +15,82 @@ pub struct Query {
     pub t_max: f64,
 }
 
-struct Candidate<'a> {
-    index: usize,
-    object: &'a Placed,
-    crossing: Crossing,
-    rung: Rung,
-    t: Bounded,
-}
-
-impl Candidate<'_> {
-    /// Whether this one comes first: by t, exactly if need be, then by priority, then by index.
-    fn beats(
-        &self,
-        other: &Self,
-        ray: &ScaledRay,
-        priority: &impl Fn(usize) -> u8,
-        tally: &mut Tally,
-    ) -> bool {
-        let order = self.t.minus(&other.t).sign().unwrap_or_else(|| {
-            let (order, rung) = Placed::order(
-                (self.object, &self.crossing),
-                (other.object, &other.crossing),
-                ray,
-            );
-            tally.count(rung);
-            order
-        });
-        order
-            .then_with(|| priority(self.index).cmp(&priority(other.index)))
-            .then_with(|| self.index.cmp(&other.index))
-            == Ordering::Less
+impl Query {
+    /// The ray as the ladder takes it, with its limits; `None` where nothing can be met.
+    pub(super) fn scaled(&self) -> Option<(ScaledRay, Limits)> {
+        let limits = Limits::new(self.t_min, self.t_max)?;
+        let valid = self.ray.is_valid();
+        valid.then(|| (ScaledRay::new(&self.ray), limits))
     }
 }
 
-/// The closest hit over all objects, with its object's index. Equal t is recognised exactly; then
-/// the lower `priority` of the index wins, then the lower index. `start` says of each object what
-/// is known of the origin.
-pub fn nearest(
-    objects: &[Placed],
-    query: &Query,
-    start: impl Fn(usize) -> Start,
-    priority: impl Fn(usize) -> u8,
-    tally: &mut Tally,
-) -> Option<(usize, Hit)> {
-    nearest_of(objects.iter().enumerate(), query, start, priority, tally)
+/// The first crossing with an object.
+struct ObjectCrossing<'a> {
+    index: usize,
+    object: &'a Placed,
+    crossing: Crossing,
+    tier: Tier,
+    t: Bounded,
 }
 
-/// [`nearest`] over some objects with their indices.
-pub fn nearest_of<'a>(
+/// The closest hit over some objects with their indices, with its object's index. Equal t is
+/// recognised exactly; then the lower `priority` of the index wins, then the lower index. `start`
+/// says of each object what is known of the origin.
+pub fn nearest<'a>(
     objects: impl Iterator<Item = (usize, &'a Placed)>,
     query: &Query,
     start: impl Fn(usize) -> Start,
     priority: impl Fn(usize) -> u8,
     tally: &mut Tally,
 ) -> Option<(usize, Hit)> {
-    let limits = Limits::new(query.t_min, query.t_max)?;
-    if !query.ray.is_valid() {
-        return None;
-    }
-    let ray = ScaledRay::new(&query.ray);
-    let mut best: Option<Candidate<'_>> = None;
+    let (ray, limits) = query.scaled()?;
+    let rank = |index| (priority(index), index);
+    let mut best: Option<ObjectCrossing<'_>> = None;
     for (index, object) in objects {
         let found = object.first_crossing(&ray, &limits, start(index), tally);
-        let Some((crossing, rung)) = found else {
+        let Some((crossing, tier)) = found else {
             continue;
         };
-        let candidate = Candidate {
-            index,
-            object,
-            crossing,
-            rung,
-            t: object.enclosure(&crossing, &ray),
-        };
-        let closer = best
-            .as_ref()
-            .is_none_or(|best| candidate.beats(best, &ray, &priority, tally));
-        if closer {
-            best = Some(candidate);
+        let t = object.enclosure(&crossing, &ray);
+        let is_first = best.as_ref().is_none_or(|best| {
+            let order = t.minus(&best.t).sign().unwrap_or_else(|| {
+                let crossings = [(object, &crossing), (best.object, &best.crossing)];
+                let (order, tier) = Placed::order(crossings, &ray);
+                tally.count(Some(tier));
+                order
+            });
+            order
+                .then_with(|| rank(index).cmp(&rank(best.index)))
+                .is_lt()
+        });
+        if is_first {
+            best = Some(ObjectCrossing {
+                index,
+                object,
+                crossing,
+                tier,
+                t,
+            });
         }
     }
     let best = best?;
-    let hit = best.object.hit(&best.crossing, &ray, best.rung)?;
+    let hit = best.object.hit(&best.crossing, &ray, best.tier)?;
     Some((best.index, hit))
 }
 
-/// Whether any object has a crossing strictly between `t_min` and `t_max`.
-pub fn occluded(
-    objects: &[Placed],
-    query: &Query,
-    start: impl Fn(usize) -> Start,
-    tally: &mut Tally,
-) -> bool {
-    occluded_by(objects.iter().enumerate(), query, start, tally)
-}
-
-/// [`occluded`] by some objects with their indices.
-pub fn occluded_by<'a>(
+/// Whether any of some objects with their indices has a crossing strictly between `t_min` and `t_max`.
+pub fn occluded<'a>(
     mut objects: impl Iterator<Item = (usize, &'a Placed)>,
     query: &Query,
     start: impl Fn(usize) -> Start,
     tally: &mut Tally,
 ) -> bool {
-    let Some(limits) = Limits::new(query.t_min, query.t_max) else {
+    let Some((ray, mut limits)) = query.scaled() else {
         return false;
     };
-    if !query.ray.is_valid() {
-        return false;
-    }
-    let limits = Limits {
-        inclusive: false,
-        ..limits
-    };
-    let ray = ScaledRay::new(&query.ray);
+    limits.inclusive = false;
     objects.any(|(index, object)| {
-        object
-            .first_crossing(&ray, &limits, start(index), tally)
-            .is_some()
+        let crossing = object.first_crossing(&ray, &limits, start(index), tally);
+        crossing.is_some()
     })
 }

@@ -36,7 +36,7 @@ use implicit::Implicit;
 pub use kind::{Emitter, Length, ShapeKind};
 
 pub use crate::math::ray::Ray;
-pub use list::{Query, nearest, occluded};
+pub use list::Query;
 pub use placed::{Placed, SingularMatrix};
 
 /// A shape in its own coordinates: sizes are part of the map that places it.
@@ -89,28 +89,36 @@ pub enum Start {
 }
 
 /// The kind of arithmetic that decided.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Rung {
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum Tier {
     /// f64 with a forward error bound.
+    #[default]
     Double,
     /// Double-double with a forward error bound.
     DoubleDouble,
     Exact,
 }
 
+/// How many questions each arithmetic has decided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Tally {
     pub double: u64,
     pub double_double: u64,
     pub exact: u64,
+    /// Of implicit surfaces: where arithmetic or work bound did not suffice.
+    pub undecided: u64,
+    /// Of implicit surfaces: answered without proof.
+    pub uncertified: u64,
 }
 
 impl Tally {
-    pub fn count(&mut self, rung: Rung) {
-        match rung {
-            Rung::Double => self.double += 1,
-            Rung::DoubleDouble => self.double_double += 1,
-            Rung::Exact => self.exact += 1,
+    /// Counts a question by what has decided it; `None` for nothing.
+    pub fn count(&mut self, tier: Option<Tier>) {
+        match tier {
+            Some(Tier::Double) => self.double += 1,
+            Some(Tier::DoubleDouble) => self.double_double += 1,
+            Some(Tier::Exact) => self.exact += 1,
+            None => self.undecided += 1,
         }
     }
 
@@ -119,7 +127,13 @@ impl Tally {
             double: self.double + other.double,
             double_double: self.double_double + other.double_double,
             exact: self.exact + other.exact,
+            undecided: self.undecided + other.undecided,
+            uncertified: self.uncertified + other.uncertified,
         }
+    }
+
+    pub fn rays(&self) -> u64 {
+        self.double + self.double_double + self.exact + self.undecided + self.uncertified
     }
 }
 
@@ -137,12 +151,5 @@ pub struct Hit {
     pub local: DVec3,
     /// Whether the ray meets the outward (+z) side.
     pub front: bool,
-    pub rung: Rung,
-}
-
-/// Both crossings of a line with a convex surface; the same one twice for flat shapes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Crossings {
-    pub near: Hit,
-    pub far: Hit,
+    pub tier: Tier,
 }

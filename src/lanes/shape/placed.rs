@@ -3,12 +3,12 @@
 use std::cmp::Ordering;
 
 use super::ladder::{Ladder, ScaledRay};
-use super::line::{Crossing, LocalRay};
-use super::question::{First, Limits, Through};
-use super::value::{self, Values};
-use super::{Crossings, Hit, Ray, Rung, ShapeKind, Start, Tally};
+use super::line::Crossing;
+use super::question::{FirstCrossing, Limits};
+use super::surd::Surd;
+use super::value;
+use super::{Hit, Query, Ray, ShapeKind, Start, Tally, Tier};
 use crate::math::affine::Affine;
-use crate::math::exact::Exact;
 use crate::math::number::{Bounded, Number};
 
 /// The matrix maps space onto a plane or less (or has entries that are not finite).
@@ -22,7 +22,8 @@ pub struct SingularMatrix;
 pub struct Placed {
     kind: ShapeKind,
     to_world: Affine,
-    ladder: Ladder,
+    /// The map between world and object in each arithmetic.
+    pub ladder: Ladder,
 }
 
 impl Placed {
@@ -52,28 +53,14 @@ impl Placed {
     /// A line that only touches a closed set hits it, except that flat shapes are missed by lines
     /// in their own plane.
     pub fn first_hit(&self, ray: &Ray, t_min: f64, start: Start, tally: &mut Tally) -> Option<Hit> {
-        let limits = Limits::new(t_min, f64::INFINITY)?;
-        if !ray.is_valid() {
-            return None;
-        }
-        let ray = ScaledRay::new(ray);
-        let (crossing, rung) = self.first_crossing(&ray, &limits, start, tally)?;
-        self.hit(&crossing, &ray, rung)
-    }
-
-    /// Both crossings of the whole line, at whatever t.
-    pub fn crossings(&self, ray: &Ray, tally: &mut Tally) -> Option<Crossings> {
-        if !ray.is_valid() {
-            return None;
-        }
-        let ray = ScaledRay::new(ray);
-        let (span, rung) = self.ladder.climb(&ray, &Through(self.kind))?;
-        tally.count(rung);
-        let span = span?;
-        Some(Crossings {
-            near: self.hit(&span.near, &ray, rung)?,
-            far: self.hit(&span.far, &ray, rung)?,
-        })
+        let query = Query {
+            ray: *ray,
+            t_min,
+            t_max: f64::INFINITY,
+        };
+        let (ray, limits) = query.scaled()?;
+        let (crossing, tier) = self.first_crossing(&ray, &limits, start, tally)?;
+        self.hit(&crossing, &ray, tier)
     }
 
     /// World → canonical coordinates, every entry computed in double-double and rounded once.
@@ -84,18 +71,13 @@ impl Placed {
         }
     }
 
-    /// The map between world and object, on each rung.
-    pub fn ladder(&self) -> &Ladder {
-        &self.ladder
-    }
-
     pub(super) fn first_crossing(
         &self,
         ray: &ScaledRay,
         limits: &Limits,
         start: Start,
         tally: &mut Tally,
-    ) -> Option<(Crossing, Rung)> {
+    ) -> Option<(Crossing, Tier)> {
         let met = match start {
             Start::Free => true,
             Start::OnSurfaceInward => !self.kind.is_flat(),
@@ -104,35 +86,23 @@ impl Placed {
         if !met {
             return None;
         }
-        let question = First {
+        let question = FirstCrossing {
             kind: self.kind,
             ray,
             limits,
             start,
         };
-        let (crossing, rung) = self.ladder.climb(ray, &question)?;
-        tally.count(rung);
-        Some((crossing?, rung))
+        let (crossing, tier) = self.ladder.climb(ray, &question)?;
+        tally.count(Some(tier));
+        Some((crossing?, tier))
     }
 
     /// t, point and normal of a decided crossing; double-double unless its own bound says that it
     /// is not sharp enough here.
-    pub(super) fn hit(&self, crossing: &Crossing, ray: &ScaledRay, rung: Rung) -> Option<Hit> {
-        let Values {
-            t,
-            point,
-            normal,
-            local,
-        } = value::values(crossing, &self.ladder.double_double, ray)
-            .or_else(|| value::values(crossing, &self.ladder.exact, ray))?;
-        (t.is_finite() && point.is_finite()).then_some(Hit {
-            t,
-            point,
-            normal,
-            local,
-            front: !crossing.leaving,
-            rung,
-        })
+    pub fn hit(&self, crossing: &Crossing, ray: &ScaledRay, tier: Tier) -> Option<Hit> {
+        let hit = value::hit(crossing, &self.ladder.double_double, ray, tier)
+            .or_else(|| value::hit(crossing, &self.ladder.exact, ray, tier))?;
+        (hit.t.is_finite() && hit.point.is_finite()).then_some(hit)
     }
 
     /// An enclosure of the crossing's t in f64, in units of the scaled direction.
@@ -141,21 +111,15 @@ impl Placed {
     }
 
     /// Which of two crossings on the same ray comes first, by sharper numbers than f64.
-    pub(super) fn order(
-        (object, crossing): (&Self, &Crossing),
-        (other, other_crossing): (&Self, &Crossing),
-        ray: &ScaledRay,
-    ) -> (Ordering, Rung) {
-        let mine = value::parameter(crossing, &object.ladder.double_double.local(ray));
-        let theirs = value::parameter(other_crossing, &other.ladder.double_double.local(ray));
-        if let Some(order) = mine.minus(&theirs).sign() {
-            return (order, Rung::DoubleDouble);
+    pub(super) fn order(crossings: [(&Self, &Crossing); 2], ray: &ScaledRay) -> (Ordering, Tier) {
+        let [a, b] = crossings.map(|(object, crossing)| {
+            value::parameter(crossing, &object.ladder.double_double.local(ray))
+        });
+        if let Some(order) = a.minus(&b).sign() {
+            return (order, Tier::DoubleDouble);
         }
-        let surd = |placed: &Self, crossing: &Crossing| {
-            let line: LocalRay<Exact> = placed.ladder.exact.local(ray);
-            super::surd::Surd::of(crossing, &line)
-        };
-        let order = surd(object, crossing).compare(&surd(other, other_crossing));
-        (order, Rung::Exact)
+        let [a, b] =
+            crossings.map(|(object, crossing)| Surd::of(crossing, &object.ladder.exact.local(ray)));
+        (a.compare(&b), Tier::Exact)
     }
 }

@@ -1,9 +1,7 @@
 //! The questions asked on the ladder.
 
-use std::cmp::Ordering;
-
 use super::ladder::{Question, ScaledRay};
-use super::line::{Crossing, Fraction, LocalRay, Span};
+use super::line::{Crossing, Fraction, LocalRay};
 use super::{ShapeKind, Start};
 use crate::math::number::Number;
 
@@ -29,7 +27,7 @@ impl Limits {
 }
 
 /// Which crossing within the limits comes first?
-pub struct First<'a> {
+pub struct FirstCrossing<'a> {
     pub kind: ShapeKind,
     /// The ray in the world, for the units of t.
     pub ray: &'a ScaledRay,
@@ -37,52 +35,27 @@ pub struct First<'a> {
     pub start: Start,
 }
 
-impl Question for First<'_> {
+impl Question for FirstCrossing<'_> {
     type Answer = Option<Crossing>;
 
     fn ask<N: Number>(&self, ray: &LocalRay<N>) -> Option<Option<Crossing>> {
         let Some(span) = self.kind.span(ray)? else {
             return Some(None);
         };
-        let candidates = [span.near, span.far];
         let skipped = usize::from(self.start == Start::OnSurfaceInward || span.near == span.far);
-        let t_min = Fraction::whole(self.ray.scaled_t(self.limits.t_min));
-        for crossing in &candidates[skipped..] {
-            let counts = match crossing.compare(ray, &t_min)? {
-                Ordering::Less => false,
-                Ordering::Equal => self.limits.inclusive,
-                Ordering::Greater => true,
-            };
-            if counts {
-                return self.before_end(crossing, ray);
+        let limit = |t| Fraction::whole(self.ray.scaled_t(t));
+        let t_min = limit(self.limits.t_min);
+        for crossing in &[span.near, span.far][skipped..] {
+            let order = crossing.compare(ray, &t_min)?;
+            if order.is_lt() || (order.is_eq() && !self.limits.inclusive) {
+                continue;
             }
+            let is_before = match self.limits.t_max {
+                Some(t_max) => crossing.compare(ray, &limit(t_max))?.is_lt(),
+                None => true,
+            };
+            return Some(is_before.then_some(*crossing));
         }
         Some(None)
-    }
-}
-
-impl First<'_> {
-    fn before_end<N: Number>(
-        &self,
-        crossing: &Crossing,
-        ray: &LocalRay<N>,
-    ) -> Option<Option<Crossing>> {
-        let Some(t_max) = self.limits.t_max else {
-            return Some(Some(*crossing));
-        };
-        let t_max = Fraction::whole(self.ray.scaled_t(t_max));
-        let before = crossing.compare(ray, &t_max)? == Ordering::Less;
-        Some(before.then_some(*crossing))
-    }
-}
-
-/// Where does the whole line enter and leave?
-pub struct Through(pub ShapeKind);
-
-impl Question for Through {
-    type Answer = Option<Span>;
-
-    fn ask<N: Number>(&self, ray: &LocalRay<N>) -> Option<Option<Span>> {
-        self.0.span(ray)
     }
 }

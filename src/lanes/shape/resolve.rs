@@ -1,8 +1,6 @@
 //! What lanes cannot decide: whole rays taken to the certified ladder.
 
-use glam::DVec3;
-
-use super::list::{Query, nearest_of, occluded_by};
+use super::list::{Query, nearest, occluded};
 use super::{Hit, Placed, Ray, Start, Tally};
 
 /// The certified shapes of a scene, by their index among all objects.
@@ -23,7 +21,7 @@ pub struct Departure {
 
 /// A ray that lanes could not decide, and the objects that may have to do with it.
 #[derive(Debug, Clone, Copy)]
-pub struct Doubt<'a> {
+pub struct UndecidedRay<'a> {
     /// The objects to ask; `None` for all.
     pub candidates: Option<&'a [u32]>,
     pub ray: Ray,
@@ -60,20 +58,12 @@ impl Resolver {
         }
     }
 
-    pub fn nearest(&self, doubt: &Doubt<'_>, tally: &mut Tally) -> Option<Resolved> {
-        let Doubt {
-            candidates,
-            ray,
-            departure,
-        } = *doubt;
-        let query = Query {
-            ray,
-            t_min: 0.0,
-            t_max: f64::INFINITY,
-        };
-        let found = nearest_of(
-            self.chosen(candidates),
-            &query,
+    /// The first hit at t ≥ 0.
+    pub fn nearest(&self, undecided: &UndecidedRay<'_>, tally: &mut Tally) -> Option<Resolved> {
+        let UndecidedRay { ray, departure, .. } = *undecided;
+        let found = nearest(
+            self.chosen(undecided.candidates),
+            &before(ray, f64::INFINITY),
             |i| self.start(i, departure),
             |i| self.priorities[i],
             tally,
@@ -82,23 +72,19 @@ impl Resolver {
             && found.as_ref().is_none_or(|(found, _)| *found != index)
             && self.exit(index, &ray, tally).is_none()
         {
+            let placed = &self.placed[index];
             return Some(Resolved {
                 t: 0.0,
                 object: departure.object,
-                part: self.part(index, self.placed[index].inverse().point(ray.origin)),
+                part: placed.kind().part(placed.inverse().point(ray.origin)),
             });
         }
         let (index, hit) = found?;
         Some(Resolved {
             t: hit.t,
             object: self.objects[index],
-            part: self.part(index, hit.local),
+            part: self.placed[index].kind().part(hit.local),
         })
-    }
-
-    /// Which part of a shape a point in canonical coordinates is on.
-    fn part(&self, index: usize, local: DVec3) -> u32 {
-        self.placed[index].kind().part(local)
     }
 
     /// The closed shape that a ray goes into from its own wall.
@@ -114,17 +100,14 @@ impl Resolver {
     }
 
     /// Whether anything but the object `except` lies strictly between the origin and `t_max`.
-    pub fn occluded(&self, doubt: &Doubt<'_>, t_max: f64, except: u32, tally: &mut Tally) -> bool {
-        let Doubt {
-            candidates,
-            ray,
-            departure,
-        } = *doubt;
-        let query = Query {
-            ray,
-            t_min: 0.0,
-            t_max,
-        };
+    pub fn occluded(
+        &self,
+        undecided: &UndecidedRay<'_>,
+        t_max: f64,
+        except: u32,
+        tally: &mut Tally,
+    ) -> bool {
+        let UndecidedRay { ray, departure, .. } = *undecided;
         let start = |i: usize| {
             if self.objects[i] == except {
                 Start::Excluded
@@ -132,7 +115,12 @@ impl Resolver {
                 self.start(i, departure)
             }
         };
-        if occluded_by(self.chosen(candidates), &query, start, tally) {
+        if occluded(
+            self.chosen(undecided.candidates),
+            &before(ray, t_max),
+            start,
+            tally,
+        ) {
             return true;
         }
         // What is beyond the exit from one's own shape is hidden, also where that is not ahead.
@@ -155,5 +143,13 @@ impl Resolver {
         } else {
             Start::Free
         }
+    }
+}
+
+fn before(ray: Ray, t_max: f64) -> Query {
+    Query {
+        ray,
+        t_min: 0.0,
+        t_max,
     }
 }

@@ -37,8 +37,8 @@ pub fn slab<N: Number>(ray: &LocalRay<N>, axis: usize) -> Option<Slab> {
 
 /// The part of a span that lies between the faces of a slab, if any.
 pub fn cut<N: Number>(ray: &LocalRay<N>, mut span: Span, faces: &Span) -> Option<Option<Span>> {
-    let enters = faces.near.fraction(ray)?;
-    let leaves = faces.far.fraction(ray)?;
+    let enters = faces.near.fraction(ray).ok()?;
+    let leaves = faces.far.fraction(ray).ok()?;
     if span.near.compare(ray, &leaves)? == Ordering::Greater
         || span.far.compare(ray, &enters)? == Ordering::Less
     {
@@ -56,94 +56,69 @@ pub fn cut<N: Number>(ray: &LocalRay<N>, mut span: Span, faces: &Span) -> Option
 /// Crossings of one slab |x| ≤ 1 of the local ray, with bounds.
 #[derive(Clone, Copy)]
 pub struct LaneSlab<L: Lanes> {
+    /// The lines' coordinate is `origin` + t `direction`.
+    pub origin: L::Real,
+    pub direction: L::Real,
+    /// Bounds of the errors of both numbers.
+    origin_error: L::Real,
+    direction_error: L::Real,
     pub near: Enclosure<L>,
     pub far: Enclosure<L>,
-    /// Lanes that may run along the slab, for which the bounds mean nothing.
+    /// Lanes that may run along the slab, for which near and far mean nothing.
     pub parallel: L::Mask,
 }
 
-/// One coordinate of the lines, o + t d, with bounds of the errors of both numbers.
-#[derive(Clone, Copy)]
-pub struct Coordinate<L: Lanes> {
-    pub origin: L::Real,
-    pub direction: L::Real,
-    pub origin_error: L::Real,
-    pub direction_error: L::Real,
-}
-
-/// A local coordinate (origin, direction) with bounds of its errors.
-#[inline(always)]
-pub fn coordinate<L: Lanes>(
-    l: L,
-    shape: &LaneShape<L::Scalar>,
-    ray: &LaneRay<L>,
-    i: usize,
-    (origin, direction): (L::Real, L::Real),
-) -> Coordinate<L> {
-    Coordinate {
-        origin,
-        direction,
-        origin_error: shape.origin_error(l, ray, i),
-        direction_error: l.splat(shape.direction_error[i]),
-    }
-}
-
-/// Intersects the slab |o + t d| ≤ 1.
-#[inline(always)]
-pub fn lane_slab<L: Lanes>(l: L, coordinate: &Coordinate<L>) -> LaneSlab<L> {
-    let Coordinate {
-        origin: o,
-        direction: d,
-        origin_error: e,
-        direction_error: dd,
-    } = *coordinate;
-    let one = l.real(1.0);
-    let inverse = one / d;
-    let t1 = (-one - o) * inverse;
-    let t2 = (one - o) * inverse;
-    let largest = t1.abs().max(t2.abs());
-    // First order (e + |t| dd)/|d|, doubled for the rest while dd ≤ |d|/4; 5u for the arithmetic
-    // up to the rounded ends.
-    let error = (largest.mul_add(dd, e) * inverse.abs()).mul_add(
-        l.real(2.0),
-        largest * l.real(5.0 * <L::Scalar as Scalar>::ROUNDOFF),
-    );
-    LaneSlab {
-        near: Enclosure::about(t1.min(t2), error),
-        far: Enclosure::about(t1.max(t2), error),
-        parallel: !d.abs().gt(dd * l.real(4.0)),
-    }
-}
-
-/// What position says of lines along a slab.
-pub struct Along<L: Lanes> {
-    /// Lanes for which it says nothing either.
-    pub lost: L::Mask,
-    pub outside: L::Mask,
-}
-
 impl<L: Lanes> LaneSlab<L> {
-    /// Decides the parallel lanes by position, for all |t| ≤ `reach`, within which the line could hit
-    /// anything else of the shape; inside, the slab is no limit to them.
+    /// Intersects the slab of coordinate `i`, whose local origins and directions are given.
     #[inline(always)]
-    pub fn settle(&mut self, l: L, coordinate: &Coordinate<L>, reach: L::Real) -> Along<L> {
-        let Coordinate {
+    pub fn new(
+        l: L,
+        shape: &LaneShape<L::Scalar>,
+        ray: &LaneRay<L>,
+        i: usize,
+        (o, d): (L::Real, L::Real),
+    ) -> Self {
+        let e = shape.origin_error(l, ray, i);
+        let dd = l.splat(shape.direction_error[i]);
+        let one = l.real(1.0);
+        let inverse = one / d;
+        let t1 = (-one - o) * inverse;
+        let t2 = (one - o) * inverse;
+        let largest = t1.abs().max(t2.abs());
+        // First order (e + |t| dd)/|d|, doubled for the rest while dd ≤ |d|/4; 5u for the arithmetic
+        // up to the rounded ends: ±1 − o, 1/d, their product and t ∓ error are each off by u, the fifth
+        // pays for the evaluation of the error.
+        let error = (largest.mul_add(dd, e) * inverse.abs()).mul_add(
+            l.real(2.0),
+            largest * l.real(5.0 * <L::Scalar as Scalar>::ROUNDOFF),
+        );
+        Self {
             origin: o,
             direction: d,
             origin_error: e,
             direction_error: dd,
-        } = *coordinate;
+            near: Enclosure::about(t1.min(t2), error),
+            far: Enclosure::about(t1.max(t2), error),
+            parallel: !d.abs().gt(dd * l.real(4.0)),
+        }
+    }
+
+    /// Decides the parallel lanes by position, for all |t| ≤ `reach`, within which the line could hit
+    /// anything else of the shape; inside, the slab is no limit to them. Returns the lanes for which
+    /// position says nothing either, and those outside.
+    #[inline(always)]
+    pub fn settle(&mut self, l: L, reach: L::Real) -> (L::Mask, L::Mask) {
         let one = l.real(1.0);
-        let drift = (d.abs() + dd).mul_add(reach, e) * l.real(1.0 + 1e-6);
-        let inside = self.parallel & (o.abs() + drift).lt(one);
-        let outside = self.parallel & (o.abs() - drift).gt(one);
+        // The share beyond 1 pays for the rounding of drift and of o ± drift, many times over.
+        let drift = (self.direction.abs() + self.direction_error).mul_add(reach, self.origin_error)
+            * l.real(1.0 + 1e-6);
+        let o = self.origin.abs();
+        let inside = self.parallel & (o + drift).lt(one);
+        let outside = self.parallel & (o - drift).gt(one);
         let far = l.real(f64::INFINITY);
         self.near = self.near.replaced(l, self.parallel, -far);
         self.far = self.far.replaced(l, self.parallel, far);
-        Along {
-            lost: self.parallel & !inside & !outside,
-            outside,
-        }
+        (self.parallel & !inside & !outside, outside)
     }
 }
 

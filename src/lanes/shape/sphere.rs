@@ -4,9 +4,9 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::kind::{Canonical, Emitter, Length, Question};
+use super::kind::{Canonical, Emitter, LaneQuestion, Length};
 use super::lanes::part::{Part, PartKind};
-use super::lanes::{self, Enclosure, LaneRay, LaneShape, LaneSurface};
+use super::lanes::{Enclosure, LaneRay, LaneShape, LaneSpan, LaneSurface};
 use super::line::{Crossing, LocalRay, Span};
 use crate::math::affine::Affine;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar};
@@ -23,10 +23,6 @@ impl Canonical for Sphere {
     const EMITTER: Emitter = Emitter::Sphere;
     const ROUND: Option<usize> = Some(3);
 
-    fn corners() -> Option<[DVec3; 2]> {
-        Some([-DVec3::ONE, DVec3::ONE])
-    }
-
     fn half_range(along: DVec3) -> f64 {
         along.length()
     }
@@ -42,15 +38,18 @@ impl Canonical for Sphere {
     }
 
     #[inline(always)]
-    fn lane_span<L: Lanes>(l: L, question: &Question<'_, L>) -> lanes::Span<L> {
-        let Question {
+    fn lane_span<L: Lanes>(l: L, question: &LaneQuestion<'_, L>) -> LaneSpan<L> {
+        let LaneQuestion {
             shape,
             ray,
             asked,
             limit,
         } = *question;
         match &shape.ball {
-            Some(ball) => ball_span(l, ball, ray, asked, limit),
+            Some(ball) => {
+                let value = inlined!(|x: &L::Scalar| l.splat(*x));
+                ball_span(l, ball, value, ray, asked, limit)
+            }
             None => ellipsoid_span(l, shape, ray),
         }
     }
@@ -75,22 +74,23 @@ impl Canonical for Sphere {
     }
 }
 
-/// A sphere whose placement only scales it alike along all axes and moves it.
+/// A sphere whose placement only scales it alike along all axes and moves it; or several, each number
+/// a column with a place for each of them.
 #[derive(Debug, Clone, Copy)]
 pub struct Ball<T> {
     pub centre: [T; 3],
     pub radius: T,
-    pub(in crate::shape) radius_squared: T,
+    pub radius_squared: T,
     /// 6u (|c| + r): what the centre's rounding and the ray's cost beside 6u max|o|.
-    pub(in crate::shape) offset_error: T,
+    pub offset_error: T,
     /// 8/r.
-    pub(in crate::shape) curvature: T,
+    pub curvature: T,
     /// Largest max|o| for which the two bounds below hold.
-    pub(in crate::shape) reach: T,
+    pub reach: T,
     /// Squared distance from the centre beyond which a line surely passes.
-    pub(in crate::shape) clear_squared: T,
+    pub clear_squared: T,
     /// Distance along the ray from its foot beyond which it is surely not near.
-    pub(in crate::shape) clear: T,
+    pub clear: T,
 }
 
 impl<T: Scalar> Ball<T> {
@@ -130,46 +130,6 @@ impl<T: Scalar> Ball<T> {
     }
 }
 
-/// Where the numbers of the ball that a lane asks come from.
-pub trait Asked<L: Lanes> {
-    fn centre(&self, l: L) -> Vec3<L::Real>;
-    fn radius(&self, l: L) -> L::Real;
-    fn radius_squared(&self, l: L) -> L::Real;
-    fn offset_error(&self, l: L) -> L::Real;
-    fn curvature(&self, l: L) -> L::Real;
-    fn reach(&self, l: L) -> L::Real;
-    fn clear_squared(&self, l: L) -> L::Real;
-    fn clear(&self, l: L) -> L::Real;
-}
-
-macro_rules! numbers {
-    ($($name:ident),*) => {
-        $(
-            #[inline(always)]
-            fn $name(&self, l: L) -> L::Real {
-                l.splat(self.$name)
-            }
-        )*
-    };
-}
-
-impl<L: Lanes> Asked<L> for Ball<L::Scalar> {
-    #[inline(always)]
-    fn centre(&self, l: L) -> Vec3<L::Real> {
-        let [x, y, z] = self.centre;
-        Vec3::new(l.splat(x), l.splat(y), l.splat(z))
-    }
-    numbers!(
-        radius,
-        radius_squared,
-        offset_error,
-        curvature,
-        reach,
-        clear_squared,
-        clear
-    );
-}
-
 /// Where lines meet the unit sphere, or the unit circle seen along a cylinder's axis, by the
 /// discriminant from the foot of the perpendicular (Haines, Günther and Akenine-Möller,
 /// "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems ch. 7, 2019), in
@@ -188,7 +148,7 @@ pub fn round_span<L: Lanes>(
     squared: L::Real,
     inverse_length: L::Real,
     (e0, dd): (L::Real, L::Real),
-) -> lanes::Span<L> {
+) -> LaneSpan<L> {
     let u = <L::Scalar as Scalar>::ROUNDOFF;
     let c = l.real(1.0) - squared;
     let e = foot_t.abs().mul_add(dd, e0);
@@ -202,7 +162,7 @@ pub fn round_span<L: Lanes>(
     let along = q.mul_add(l.real(6.0), e * l.real(4.0));
     let error =
         (c_error / root + along).mul_add(inverse_length, (foot_t.abs() + half) * l.real(9.0 * u));
-    lanes::Span {
+    LaneSpan {
         near: Enclosure::about(foot_t - half, error),
         far: Enclosure::about(foot_t + half, error),
         hit: c.gt(c_error),
@@ -212,11 +172,7 @@ pub fn round_span<L: Lanes>(
 }
 
 #[inline(always)]
-fn ellipsoid_span<L: Lanes>(
-    l: L,
-    shape: &LaneShape<L::Scalar>,
-    ray: &LaneRay<L>,
-) -> lanes::Span<L> {
+fn ellipsoid_span<L: Lanes>(l: L, shape: &LaneShape<L::Scalar>, ray: &LaneRay<L>) -> LaneSpan<L> {
     let o = shape.inverse.point(l, ray.origin);
     let d = shape.inverse.vector(l, ray.direction);
     let inverse_square = l.real(1.0) / d.length_squared();
@@ -226,30 +182,32 @@ fn ellipsoid_span<L: Lanes>(
     round_span(l, foot_t, squared, inverse_square.sqrt(), errors)
 }
 
-/// The same about the centre in world units, for a ball.
+/// The same about the centre in world units, for balls of which `value` takes each lane's number from
+/// a column.
 ///
 /// Packets that surely pass the ball, leave it behind or end before it are let go by bounds that
 /// hold for all usual rays.
 #[inline(always)]
-pub fn ball_span<L: Lanes>(
+pub fn ball_span<L: Lanes, C>(
     l: L,
-    ball: &impl Asked<L>,
+    ball: &Ball<C>,
+    value: impl Fn(&C) -> L::Real + Copy,
     ray: &LaneRay<L>,
     asked: L::Mask,
     limit: L::Real,
-) -> lanes::Span<L> {
-    let foot = Foot::new(ray, ball.centre(l));
-    let apart = foot.is_apart(l, ball, limit) & ray.extent.le(ball.reach(l));
+) -> LaneSpan<L> {
+    let foot = Foot::new(ball, value, ray);
+    let apart = foot.is_apart(ball, value, limit) & ray.extent.le(value(&ball.reach));
     if (asked & !apart).any() {
-        let span = foot.span(l, ball, ray);
-        return lanes::Span {
+        let span = foot.span(l, ball, value, ray);
+        return LaneSpan {
             miss: span.miss | apart,
             hit: span.hit & !apart,
             ..span
         };
     }
     let nowhere = Enclosure::about(foot.t, l.real(0.0));
-    lanes::Span {
+    LaneSpan {
         near: nowhere,
         far: nowhere,
         hit: l.mask(false),
@@ -265,10 +223,10 @@ pub struct Foot<L: Lanes> {
 }
 
 impl<L: Lanes> Foot<L> {
-    /// Of a ray's line, for a ball about `centre`.
     #[inline(always)]
-    pub fn new(ray: &LaneRay<L>, centre: Vec3<L::Real>) -> Self {
-        let o = ray.origin - centre;
+    pub fn new<C>(ball: &Ball<C>, value: impl Fn(&C) -> L::Real + Copy, ray: &LaneRay<L>) -> Self {
+        let [x, y, z] = &ball.centre;
+        let o = ray.origin - Vec3::new(value(x), value(y), value(z));
         let t = -(o.dot(ray.direction) * ray.inverse_square);
         let squared = o.along(ray.direction, t).length_squared();
         Self { t, squared }
@@ -277,28 +235,39 @@ impl<L: Lanes> Foot<L> {
     /// Whether the ray surely passes the ball, leaves it behind or ends before it, if it starts
     /// within the ball's reach.
     #[inline(always)]
-    pub fn is_apart(&self, l: L, ball: &impl Asked<L>, limit: L::Real) -> L::Mask {
-        let clear = ball.clear(l);
-        self.squared.gt(ball.clear_squared(l)) | self.t.lt(-clear) | self.t.gt(limit + clear)
+    fn is_apart<C>(
+        &self,
+        ball: &Ball<C>,
+        value: impl Fn(&C) -> L::Real + Copy,
+        limit: L::Real,
+    ) -> L::Mask {
+        let clear = value(&ball.clear);
+        self.squared.gt(value(&ball.clear_squared)) | self.t.lt(-clear) | self.t.gt(limit + clear)
     }
 
     /// Where the line meets the ball. Canonical coordinates would be those about the centre over r,
     /// so that the bounds of `ellipsoid_span`, times r or r², hold with E r = 6u (max|o| + |c| + r),
     /// D r = 6u, and q = D r, where 64q² is less than u.
     #[inline(always)]
-    pub fn span(&self, l: L, ball: &impl Asked<L>, ray: &LaneRay<L>) -> lanes::Span<L> {
+    pub fn span<C>(
+        &self,
+        l: L,
+        ball: &Ball<C>,
+        value: impl Fn(&C) -> L::Real + Copy,
+        ray: &LaneRay<L>,
+    ) -> LaneSpan<L> {
         let u = <L::Scalar as Scalar>::ROUNDOFF;
         let Self { t, squared } = *self;
-        let radius_squared = ball.radius_squared(l);
+        let radius_squared = value(&ball.radius_squared);
         let c = radius_squared - squared;
         let unit = l.real(6.5 * u);
-        let e = (t.abs() + ray.extent).mul_add(unit, ball.offset_error(l));
-        let relative = e.mul_add(ball.curvature(l), l.real(9.0 * u));
+        let e = (t.abs() + ray.extent).mul_add(unit, value(&ball.offset_error));
+        let relative = e.mul_add(value(&ball.curvature), l.real(9.0 * u));
         let c_error = (e * e).mul_add(l.real(16.0), relative * squared.max(radius_squared));
         let half = (c.max(l.real(0.0)) * ray.inverse_square).sqrt();
-        let along = ball.radius(l).mul_add(l.real(40.0 * u), e * l.real(4.0));
+        let along = value(&ball.radius).mul_add(l.real(40.0 * u), e * l.real(4.0));
         let error = (t.abs() + half).mul_add(l.real(9.0 * u), c_error / half + along);
-        lanes::Span {
+        LaneSpan {
             near: Enclosure::about(t - half, error),
             far: Enclosure::about(t + half, error),
             hit: c.gt(c_error),

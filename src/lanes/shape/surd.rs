@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::line::{Crossing, Feature, LocalRay};
+use super::line::{Crossing, LocalRay};
 use crate::math::exact::Exact;
 use crate::math::number::Number;
 
@@ -15,12 +15,13 @@ pub struct Surd {
     minus: bool,
 }
 
-struct Root {
+/// ±√`square`.
+struct SignedRoot {
     square: Exact,
     minus: bool,
 }
 
-impl Root {
+impl SignedRoot {
     fn sign(&self) -> Ordering {
         let sign = order(&self.square);
         if self.minus { sign.reverse() } else { sign }
@@ -34,9 +35,14 @@ fn order(x: &Exact) -> Ordering {
 
 impl Surd {
     pub fn of(crossing: &Crossing, ray: &LocalRay<Exact>) -> Self {
-        let zero = Exact::of(0.0);
-        match (crossing.fraction(ray), crossing.feature) {
-            (None, Feature::Round { dimensions }) => {
+        match crossing.fraction(ray) {
+            Ok(t) => Self {
+                p: t.numerator,
+                q: t.denominator,
+                s: Exact::of(0.0),
+                minus: false,
+            },
+            Err(dimensions) => {
                 let quadratic = ray.quadratic(dimensions);
                 Self {
                     p: quadratic.b.negated(),
@@ -45,29 +51,17 @@ impl Surd {
                     minus: !crossing.leaving,
                 }
             }
-            (None, _) => Self {
-                p: zero.clone(),
-                q: Exact::of(1.0),
-                s: zero,
-                minus: false,
-            },
-            (Some(t), _) => Self {
-                p: t.numerator,
-                q: t.denominator,
-                s: zero,
-                minus: false,
-            },
         }
     }
 
     /// self ⋚ other, by squaring twice.
     pub fn compare(&self, other: &Self) -> Ordering {
         let rational = self.p.times(&other.q).minus(&other.p.times(&self.q));
-        let mine = Root {
+        let mine = SignedRoot {
             square: self.s.times(&other.q.squared()),
             minus: self.minus,
         };
-        let theirs = Root {
+        let theirs = SignedRoot {
             square: other.s.times(&self.q.squared()),
             minus: !other.minus,
         };
@@ -75,7 +69,7 @@ impl Surd {
     }
 }
 
-fn sign_of_roots(a: &Root, b: &Root) -> Ordering {
+fn sign_of_roots(a: &SignedRoot, b: &SignedRoot) -> Ordering {
     match (a.sign(), b.sign()) {
         (Ordering::Equal, sign) | (sign, Ordering::Equal) => sign,
         (sign_a, sign_b) if sign_a == sign_b => sign_a,
@@ -85,7 +79,7 @@ fn sign_of_roots(a: &Root, b: &Root) -> Ordering {
 }
 
 /// Sign of P + A + B: where P and A + B differ in sign, the larger square decides.
-fn sign_of_sum(p: &Exact, a: &Root, b: &Root) -> Ordering {
+fn sign_of_sum(p: &Exact, a: &SignedRoot, b: &SignedRoot) -> Ordering {
     let sign_p = order(p);
     let sign_roots = sign_of_roots(a, b);
     match (sign_p, sign_roots) {
@@ -95,7 +89,7 @@ fn sign_of_sum(p: &Exact, a: &Root, b: &Root) -> Ordering {
     }
     // P² − (A + B)² = (P² − A² − B²) − 2AB.
     let left = p.squared().minus(&a.square).minus(&b.square);
-    let right = Root {
+    let right = SignedRoot {
         square: a.square.times(&b.square).times(&Exact::of(4.0)),
         minus: a.minus != b.minus,
     };
@@ -107,7 +101,7 @@ fn sign_of_sum(p: &Exact, a: &Root, b: &Root) -> Ordering {
 }
 
 /// x ⋚ R.
-fn order_against_root(x: &Exact, root: &Root) -> Ordering {
+fn order_against_root(x: &Exact, root: &SignedRoot) -> Ordering {
     let (sign_x, sign_root) = (order(x), root.sign());
     if sign_x != sign_root {
         return sign_x.cmp(&sign_root);

@@ -4,31 +4,19 @@ use glam::DVec3;
 
 use super::ladder::{Frame, ScaledRay};
 use super::line::{Crossing, Feature, LocalRay};
+use super::{Hit, Tier};
 use crate::math::number::{Number, dot, power_of_two};
 
 /// Error allowed to a value before it is rounded to f64: a sixteenth of a unit in the last place
 /// (relative to the value for t, to 1 for the others).
 const SHARP: f64 = f64::EPSILON / 32.0;
 
-#[derive(Debug, Clone, Copy)]
-pub struct Values {
-    /// In units of the world direction.
-    pub t: f64,
-    /// World coordinates.
-    pub point: DVec3,
-    /// Unit outward normal, world.
-    pub normal: DVec3,
-    /// Canonical coordinates.
-    pub local: DVec3,
-}
-
 /// t of a crossing, in units of the scaled direction. A root is taken in the form without
 /// cancellation: (−b ± √disc) / a where the signs agree, else c / (−b ∓ √disc).
 pub fn parameter<N: Number>(crossing: &Crossing, ray: &LocalRay<N>) -> N {
-    let dimensions = match (crossing.fraction(ray), crossing.feature) {
-        (Some(t), _) => return t.numerator.divided_by(&t.denominator),
-        (None, Feature::Round { dimensions }) => dimensions,
-        (None, _) => return N::of(0.0),
+    let dimensions = match crossing.fraction(ray) {
+        Ok(t) => return t.numerator.divided_by(&t.denominator),
+        Err(dimensions) => dimensions,
     };
     let quadratic = ray.quadratic(dimensions);
     let root = quadratic.discriminant.square_root();
@@ -51,8 +39,14 @@ fn within<N: Number>(v: &[N; 3], bound: f64) -> bool {
     v.iter().all(|x| x.error() <= bound)
 }
 
-/// The values, or `None` where this kind of number is not sharp enough.
-pub fn values<N: Number>(crossing: &Crossing, frame: &Frame<N>, ray: &ScaledRay) -> Option<Values> {
+/// The hit at a crossing, or `None` where this kind of number is not sharp enough; `tier` has decided
+/// that there is one.
+pub fn hit<N: Number>(
+    crossing: &Crossing,
+    frame: &Frame<N>,
+    ray: &ScaledRay,
+    tier: Tier,
+) -> Option<Hit> {
     let line = frame.local(ray);
     let t = parameter(crossing, &line);
     let sharp_t = t.error() <= SHARP * t.to_f64().abs();
@@ -89,10 +83,12 @@ pub fn values<N: Number>(crossing: &Crossing, frame: &Frame<N>, ray: &ScaledRay)
     let sharp = within(&local, SHARP)
         && within(&normal, SHARP)
         && within(&point, SHARP * rounded(&point).abs().max_element());
-    sharp.then(|| Values {
+    sharp.then(|| Hit {
         t: t.to_f64() * power_of_two(-ray.exponent()),
         point: rounded(&point),
         normal: rounded(&normal),
         local: rounded(&local),
+        front: !crossing.leaving,
+        tier,
     })
 }

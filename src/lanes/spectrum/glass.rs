@@ -2,20 +2,6 @@
 
 use super::ior::RefractiveIndex;
 
-/// A clear medium: its name and formula.
-struct Glass {
-    name: &'static str,
-    index: RefractiveIndex,
-}
-
-/// Sellmeier formula with the squared resonance wavelengths in µm².
-const fn glass(name: &'static str, b: [f64; 3], c: [f64; 3]) -> Glass {
-    Glass {
-        name,
-        index: RefractiveIndex::Sellmeier { b, c },
-    }
-}
-
 /// The media by name.
 ///
 /// * N-BK7 … SF11: Schott's Zemax catalogue of 2017-01-20, relative to air at 20 °C, 1013 hPa, as
@@ -31,49 +17,63 @@ const fn glass(name: &'static str, b: [f64; 3], c: [f64; 3]) -> Glass {
 /// Schott's and Malitson's indices count relative to air; against vacuum n is larger by a factor of
 /// 1.00027. Water's formula gives 1.33335 at 589.3 nm, which is the handbook's value against vacuum
 /// (relative to air it is 1.3330). All are used as they stand.
-const GLASSES: [Glass; 9] = [
-    glass(
+const GLASSES: [(&str, RefractiveIndex); 9] = [
+    (
         "N-BK7",
-        [1.039_612_12, 0.231_792_344, 1.010_469_45],
-        [0.006_000_698_67, 0.020_017_914_4, 103.560_653],
+        RefractiveIndex::sellmeier(
+            [1.039_612_12, 0.231_792_344, 1.010_469_45],
+            [0.006_000_698_67, 0.020_017_914_4, 103.560_653],
+        ),
     ),
-    glass(
+    (
         "N-SF10",
-        [1.621_539_02, 0.256_287_842, 1.644_475_52],
-        [0.012_224_145_7, 0.059_573_677_5, 147.468_793],
+        RefractiveIndex::sellmeier(
+            [1.621_539_02, 0.256_287_842, 1.644_475_52],
+            [0.012_224_145_7, 0.059_573_677_5, 147.468_793],
+        ),
     ),
-    glass(
+    (
         "N-SF11",
-        [1.737_596_95, 0.313_747_346, 1.898_781_01],
-        [0.013_188_707, 0.062_306_814_2, 155.236_29],
+        RefractiveIndex::sellmeier(
+            [1.737_596_95, 0.313_747_346, 1.898_781_01],
+            [0.013_188_707, 0.062_306_814_2, 155.236_29],
+        ),
     ),
-    glass(
+    (
         "F2",
-        [1.345_333_59, 0.209_073_176, 0.937_357_162],
-        [0.009_977_438_71, 0.047_045_076_7, 111.886_764],
+        RefractiveIndex::sellmeier(
+            [1.345_333_59, 0.209_073_176, 0.937_357_162],
+            [0.009_977_438_71, 0.047_045_076_7, 111.886_764],
+        ),
     ),
-    glass(
+    (
         "SF10",
-        [1.616_259_77, 0.259_229_334, 1.077_623_17],
-        [0.012_753_455_9, 0.058_198_395_4, 116.607_68],
+        RefractiveIndex::sellmeier(
+            [1.616_259_77, 0.259_229_334, 1.077_623_17],
+            [0.012_753_455_9, 0.058_198_395_4, 116.607_68],
+        ),
     ),
-    glass(
+    (
         "SF11",
-        [1.738_484_03, 0.311_168_974, 1.174_908_71],
-        [0.013_606_860_4, 0.061_596_046_3, 121.922_711],
+        RefractiveIndex::sellmeier(
+            [1.738_484_03, 0.311_168_974, 1.174_908_71],
+            [0.013_606_860_4, 0.061_596_046_3, 121.922_711],
+        ),
     ),
-    glass(
+    (
         "fused-silica",
-        [0.696_166_3, 0.407_942_6, 0.897_479_4],
-        [
-            0.068_404_3 * 0.068_404_3,
-            0.116_241_4 * 0.116_241_4,
-            9.896_161 * 9.896_161,
-        ],
+        RefractiveIndex::sellmeier(
+            [0.696_166_3, 0.407_942_6, 0.897_479_4],
+            [
+                0.068_404_3 * 0.068_404_3,
+                0.116_241_4 * 0.116_241_4,
+                9.896_161 * 9.896_161,
+            ],
+        ),
     ),
-    Glass {
-        name: "water",
-        index: RefractiveIndex::SellmeierFour {
+    (
+        "water",
+        RefractiveIndex::Sellmeier {
             b: [
                 0.568_402_756_5,
                 0.172_617_739_1,
@@ -87,23 +87,21 @@ const GLASSES: [Glass; 9] = [
                 10.697_927_21,
             ],
         },
-    },
-    glass(
+    ),
+    (
         "diamond",
-        [0.330_6, 4.335_6, 0.0],
-        [0.175 * 0.175, 0.106 * 0.106, 0.0],
+        RefractiveIndex::sellmeier([0.330_6, 4.335_6, 0.0], [0.175 * 0.175, 0.106 * 0.106, 0.0]),
     ),
 ];
 
 /// The refractive index of a named clear medium, any letter case; see [`glass_names`].
 pub fn named_glass(name: &str) -> Option<RefractiveIndex> {
-    GLASSES
-        .into_iter()
-        .find(|glass| glass.name.eq_ignore_ascii_case(name))
-        .map(|glass| glass.index)
+    let mut glasses = GLASSES.into_iter();
+    let (_, index) = glasses.find(|(known, _)| known.eq_ignore_ascii_case(name))?;
+    Some(index)
 }
 
 /// The names that [`named_glass`] knows.
 pub fn glass_names() -> impl Iterator<Item = &'static str> {
-    GLASSES.into_iter().map(|glass| glass.name)
+    GLASSES.into_iter().map(|(name, _)| name)
 }

@@ -10,19 +10,30 @@
 //! anything constant over a cell are exact; *node* rows (refractive indices) hold values at the
 //! cells' lower ends, linear between.
 
-use super::Spectrum;
-use super::wavelengths::WavelengthPdf;
+use super::{NM_MAX, NM_MIN, Spectrum};
 use crate::math::lanes::Scalar;
 
-/// Shortest wavelength, nm.
-pub const SHORTEST: f64 = 360.0;
-/// Longest wavelength, nm.
-pub const LONGEST: f64 = 830.0;
 /// Number of cells, a multiple of every number of wavelengths.
 pub const CELLS: usize = 4096;
 
-/// The inverse of the cumulative density by which heroes are drawn: that of
-/// [`WavelengthPdf::Visible`] at the edges of the cells, and linear between.
+/// a, nm⁻¹.
+const STEEPNESS: f64 = 0.0072;
+/// Wavelength of the density's peak, nm.
+const PEAK: f64 = 538.0;
+/// tanh(a (538 − 360)).
+const TANH_LOW: f64 = 0.856_910_625_469_828;
+/// tanh(a (830 − 538)) + tanh(a (538 − 360)).
+const TANH_SPAN: f64 = 1.827_501_972_410_097_8;
+/// The wavelength, nm, at cumulative density `u` in 0…1 of p = A/cosh²(a (λ − 538 nm)),
+/// a = 0.0072 nm⁻¹, A = a/(tanh(292 a) + tanh(178 a)) (Radziszewski, Boryczko and Alda 2009, with the
+/// parameters of pbrt-v4 and Mitsuba 3).
+pub fn visible_wavelength(u: f64) -> f64 {
+    let nm = PEAK - libm::atanh(TANH_LOW - u * TANH_SPAN) / STEEPNESS;
+    nm.clamp(NM_MIN, NM_MAX)
+}
+
+/// The inverse of the cumulative density by which heroes are drawn: [`visible_wavelength`] at the
+/// edges of the cells, and linear between.
 ///
 /// Each spectrum is averaged over a cell on its own, so that where one jumps inside of a cell, of
 /// which it lights the share f, a path of n factors would have fⁿ instead of f. Such a wavelength
@@ -35,11 +46,10 @@ pub struct WavelengthGrid {
 
 impl Default for WavelengthGrid {
     fn default() -> Self {
-        let inner =
-            (1..CELLS).map(|cell| WavelengthPdf::Visible.sample(cell as f64 / CELLS as f64));
-        let ends = ([SHORTEST], [LONGEST]);
+        let inner = (1..CELLS).map(|cell| visible_wavelength(cell as f64 / CELLS as f64));
+        let lower = [NM_MIN].into_iter().chain(inner);
         Self {
-            edges: ends.0.into_iter().chain(inner).chain(ends.1).collect(),
+            edges: lower.chain([NM_MAX]).collect(),
         }
     }
 }
@@ -50,7 +60,7 @@ impl WavelengthGrid {
         let even = Self::default();
         let mut jumps: Vec<f64> = Vec::new();
         for [from, to] in spectra.into_iter().flat_map(Spectrum::rises) {
-            let inside = from > SHORTEST && to < LONGEST;
+            let inside = from > NM_MIN && to < NM_MAX;
             // Across several cells, a spectrum is as good as smooth.
             if inside && to - from < even.width_at(from) {
                 jumps.extend([from, to]);

@@ -17,25 +17,14 @@ pub enum RefractiveIndex {
     Constant(f64),
     /// n = A + B/λ² + C/λ⁴ …, λ in µm (Cauchy 1830).
     Cauchy(Vec<f64>),
-    /// n² = 1 + Σ Bᵢ λ²/(λ² − Cᵢ), λ in µm (Sellmeier 1871); C in µm².
+    /// n² = 1 + Σ Bᵢ λ²/(λ² − Cᵢ), λ in µm (Sellmeier 1871).
     Sellmeier {
-        b: [f64; 3],
-        /// Squared resonance wavelengths, µm².
-        c: [f64; 3],
-    },
-    /// The same with four terms, as water needs.
-    SellmeierFour {
         b: [f64; 4],
         /// Squared resonance wavelengths, µm².
         c: [f64; 4],
     },
-    /// Measured n and k.
-    Complex {
-        /// Real part n.
-        n: Spectrum,
-        /// Extinction coefficient k.
-        k: Spectrum,
-    },
+    /// Measured: real part n and extinction coefficient k.
+    Complex { n: Spectrum, k: Spectrum },
 }
 
 /// A refractive index that no medium can have.
@@ -43,21 +32,21 @@ pub enum RefractiveIndex {
 pub enum IorError {
     /// The real part is zero, negative, infinite or no number.
     #[error("the refractive index must be positive, but at {nm} nm it is {n}")]
-    Index {
-        nm: f64,
-        /// The real part there.
-        n: f64,
-    },
+    Index { nm: f64, n: f64 },
     /// The extinction coefficient is negative, infinite or no number.
     #[error("the extinction coefficient must not be negative, but at {nm} nm it is {k}")]
-    Extinction {
-        nm: f64,
-        /// The extinction coefficient there.
-        k: f64,
-    },
+    Extinction { nm: f64, k: f64 },
 }
 
 impl RefractiveIndex {
+    /// Sellmeier's formula with three terms, as glasses have it; C in µm².
+    pub const fn sellmeier([b1, b2, b3]: [f64; 3], [c1, c2, c3]: [f64; 3]) -> Self {
+        Self::Sellmeier {
+            b: [b1, b2, b3, 0.0],
+            c: [c1, c2, c3, 0.0],
+        }
+    }
+
     /// The real part n at wavelength `nm`.
     pub fn n(&self, nm: f64) -> f64 {
         let squared = (nm * 1e-3) * (nm * 1e-3);
@@ -67,8 +56,10 @@ impl RefractiveIndex {
                 .iter()
                 .rev()
                 .fold(0.0, |sum, coefficient| sum / squared + coefficient),
-            Self::Sellmeier { b, c } => sellmeier(b, c, squared),
-            Self::SellmeierFour { b, c } => sellmeier(b, c, squared),
+            Self::Sellmeier { b, c } => {
+                let terms = b.iter().zip(c).map(|(b, c)| b * squared / (squared - c));
+                (1.0 + terms.sum::<f64>()).sqrt()
+            }
             Self::Complex { n, .. } => n.value(nm),
         }
     }
@@ -86,8 +77,8 @@ impl RefractiveIndex {
         match self {
             Self::Constant(_) => false,
             Self::Cauchy(coefficients) => coefficients.iter().skip(1).any(|&c| c != 0.0),
-            Self::Sellmeier { b, c } => sellmeier_disperses(b, c),
-            Self::SellmeierFour { b, c } => sellmeier_disperses(b, c),
+            // A term without resonance (C = 0) is a constant.
+            Self::Sellmeier { b, c } => b.iter().zip(c).any(|(&b, &c)| b != 0.0 && c != 0.0),
             Self::Complex { n, .. } => !n.is_constant(),
         }
     }
@@ -109,14 +100,4 @@ impl RefractiveIndex {
         }
         Ok(())
     }
-}
-
-fn sellmeier(b: &[f64], c: &[f64], squared: f64) -> f64 {
-    let terms = b.iter().zip(c).map(|(b, c)| b * squared / (squared - c));
-    (1.0 + terms.sum::<f64>()).sqrt()
-}
-
-/// A term without resonance (C = 0) is a constant.
-fn sellmeier_disperses(b: &[f64], c: &[f64]) -> bool {
-    b.iter().zip(c).any(|(&b, &c)| b != 0.0 && c != 0.0)
 }

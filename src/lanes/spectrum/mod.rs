@@ -15,7 +15,6 @@ pub mod observer;
 mod quadrature;
 pub mod rgb;
 pub mod table;
-pub mod wavelengths;
 
 pub use rgb::RgbError;
 pub use table::{Table, TableError};
@@ -28,7 +27,8 @@ pub const NM_MAX: f64 = 830.0;
 /// A function of wavelength.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Spectrum {
-    /// The same value at every wavelength.
+    /// The same value at every wavelength: the equal-energy spectrum E, whose luminance Y it is (see
+    /// [`observer`]).
     Constant(f64),
     /// Linear between samples, zero outside.
     Table(Table),
@@ -45,13 +45,8 @@ pub enum Spectrum {
         coefficients: [f64; 3],
         /// Factor; a reflectance has 1.
         scale: f64,
-    },
-    /// `scale` times the sigmoid of a quadratic polynomial times D65 of luminance 1, see [`rgb`].
-    SigmoidD65 {
-        /// The polynomial's coefficients of 1, t, t² with t = (λ − 595 nm)/235 nm.
-        coefficients: [f64; 3],
-        /// Factor on the luminance.
-        scale: f64,
+        /// Times D65 of luminance 1, as an emission is.
+        d65: bool,
     },
 }
 
@@ -59,16 +54,6 @@ pub enum Spectrum {
 pub const SPECTRUM_NAMES: [&str; 2] = ["D65", "E"];
 
 impl Spectrum {
-    /// The same value at every wavelength.
-    pub fn constant(value: f64) -> Self {
-        Self::Constant(value)
-    }
-
-    /// The equal-energy spectrum E; its luminance Y is `scale` (see [`observer`]).
-    pub fn equal_energy(scale: f64) -> Self {
-        Self::Constant(scale)
-    }
-
     /// CIE standard illuminant D65 with luminance Y = `scale` (see [`observer`]).
     pub fn d65(scale: f64) -> Self {
         Self::Table(illuminant::d65().clone()).scaled(scale)
@@ -78,7 +63,7 @@ impl Spectrum {
     pub fn named(name: &str) -> Option<Self> {
         match name.to_ascii_uppercase().as_str() {
             "D65" => Some(Self::d65(1.0)),
-            "E" => Some(Self::equal_energy(1.0)),
+            "E" => Some(Self::Constant(1.0)),
             _ => None,
         }
     }
@@ -114,16 +99,11 @@ impl Spectrum {
             Self::Sigmoid {
                 coefficients,
                 scale,
+                d65,
             } => Self::Sigmoid {
                 coefficients,
                 scale: scale * factor,
-            },
-            Self::SigmoidD65 {
-                coefficients,
-                scale,
-            } => Self::SigmoidD65 {
-                coefficients,
-                scale: scale * factor,
+                d65,
             },
         }
     }
@@ -137,17 +117,21 @@ impl Spectrum {
             Self::Sigmoid {
                 coefficients,
                 scale,
-            } => scale * rgb::sigmoid(coefficients, nm),
-            Self::SigmoidD65 {
-                coefficients,
-                scale,
-            } => scale * rgb::sigmoid(coefficients, nm) * illuminant::d65().value(nm),
+                d65,
+            } => {
+                let light = if *d65 {
+                    illuminant::d65().value(nm)
+                } else {
+                    1.0
+                };
+                scale * rgb::sigmoid(coefficients, nm) * light
+            }
         }
     }
 
     /// A number that no value over 360–830 nm exceeds.
     ///
-    /// It is attained up to rounding, except for [`Spectrum::SigmoidD65`], where it is the
+    /// It is attained up to rounding, except for a [`Spectrum::Sigmoid`] times D65, where it is the
     /// product of the two factors' maxima.
     pub fn max_value(&self) -> f64 {
         self.range()[1]
@@ -162,21 +146,23 @@ impl Spectrum {
         match self {
             Self::Constant(value) => [*value; 2],
             Self::Table(table) => table.range(NM_MIN, NM_MAX),
-            Self::Blackbody { kelvin, scale } => scale_range(blackbody::range(*kelvin), *scale),
+            Self::Blackbody { kelvin, scale } => {
+                sorted(blackbody::range(*kelvin).map(|value| value * scale))
+            }
             Self::Sigmoid {
                 coefficients,
                 scale,
-            } => scale_range(rgb::sigmoid_range(coefficients), *scale),
-            Self::SigmoidD65 {
-                coefficients,
-                scale,
+                d65,
             } => {
                 let [s_min, s_max] = rgb::sigmoid_range(coefficients);
-                let [d_min, d_max] = illuminant::d65().range(NM_MIN, NM_MAX);
+                let [d_min, d_max] = if *d65 {
+                    illuminant::d65().range(NM_MIN, NM_MAX)
+                } else {
+                    [1.0; 2]
+                };
                 // Multiplied in the order of `value`, so that rounding, which is monotone, keeps
                 // the bound a bound.
-                let (low, high) = (scale * s_min * d_min, scale * s_max * d_max);
-                [low.min(high), low.max(high)]
+                sorted([scale * s_min * d_min, scale * s_max * d_max])
             }
         }
     }
@@ -189,11 +175,12 @@ impl Spectrum {
                 let [low, high] = table.range(NM_MIN, NM_MAX);
                 low == high
             }
-            Self::Blackbody { scale, .. } | Self::SigmoidD65 { scale, .. } => *scale == 0.0,
+            Self::Blackbody { scale, .. } => *scale == 0.0,
             Self::Sigmoid {
                 coefficients: [_, linear, quadratic],
                 scale,
-            } => *scale == 0.0 || (*linear == 0.0 && *quadratic == 0.0),
+                d65,
+            } => *scale == 0.0 || (!d65 && *linear == 0.0 && *quadratic == 0.0),
         }
     }
 
@@ -202,10 +189,7 @@ impl Spectrum {
     pub fn rises(&self) -> Vec<[f64; 2]> {
         match self {
             Self::Table(table) => table.rises(),
-            Self::Constant(_)
-            | Self::Blackbody { .. }
-            | Self::Sigmoid { .. }
-            | Self::SigmoidD65 { .. } => Vec::new(),
+            Self::Constant(_) | Self::Blackbody { .. } | Self::Sigmoid { .. } => Vec::new(),
         }
     }
 
@@ -213,13 +197,12 @@ impl Spectrum {
     fn kinks_between(&self, low: f64, high: f64) -> &[f64] {
         match self {
             Self::Table(table) => table.nodes_between(low, high),
-            Self::SigmoidD65 { .. } => illuminant::d65().nodes_between(low, high),
+            Self::Sigmoid { d65: true, .. } => illuminant::d65().nodes_between(low, high),
             Self::Constant(_) | Self::Blackbody { .. } | Self::Sigmoid { .. } => &[],
         }
     }
 }
 
-fn scale_range([low, high]: [f64; 2], scale: f64) -> [f64; 2] {
-    let (a, b) = (low * scale, high * scale);
+fn sorted([a, b]: [f64; 2]) -> [f64; 2] {
     [a.min(b), a.max(b)]
 }

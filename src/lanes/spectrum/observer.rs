@@ -15,31 +15,21 @@ use super::{NM_MAX, NM_MIN, Spectrum, quadrature};
 /// ∫ ȳ dλ in nm: the trapezoid sum over the 1 nm table, exact to all its decimals.
 pub const Y_INTEGRAL: f64 = 106.856_914_916_767;
 
-/// Luminous efficacy that belongs to ȳ, lm/W (CIE 018:2019: 683 lm/W at 540 THz, in air 555.017 nm).
-pub const LUMINOUS_EFFICACY: f64 = 683.002;
-
 /// XYZ to linear sRGB (Rec. 709 primaries, white D65), without chromatic adaptation.
 ///
 /// The matrix of IEC 61966-2-1:1999/Amd 1:2003, which is the inverse of the standard's forward
-/// matrix *rounded to four decimals*. It is not the one of the exact chromaticities, see
-/// [`xyz_to_rgb_from_chromaticities`], from which it differs by up to 5e-4.
+/// matrix *rounded to four decimals*. From that of the exact chromaticities it differs by up to
+/// 5e-4.
 pub const XYZ_TO_LINEAR_SRGB: [[f64; 3]; 3] = [
     [3.240_625_5, -1.537_208, -0.498_628_6],
     [-0.968_930_7, 1.875_756_1, 0.041_517_5],
     [0.055_710_1, -0.204_021_1, 1.056_995_9],
 ];
 
-/// Chromaticities x, y of the red, green and blue primary and the white of Rec. ITU-R BT.709-6.
-pub const REC_709: [[f64; 2]; 4] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]];
-
 static TABLE: LazyLock<Vec<[f64; 3]>> = LazyLock::new(|| {
     let ([_, x, y, z], _) = columns::<4>(include_str!("data/cie_1931_2deg.csv"))
         .expect("the embedded table of the observer is well formed");
-    x.into_iter()
-        .zip(y)
-        .zip(z)
-        .map(|((x, y), z)| [x, y, z])
-        .collect()
+    (0..x.len()).map(|i| [x[i], y[i], z[i]]).collect()
 });
 
 /// x̄, ȳ, z̄ at wavelength `nm`: linear between the table's nodes at whole nm, zero outside
@@ -85,14 +75,4 @@ pub fn luminance(rgb: [f64; 3]) -> f64 {
 #[inline]
 pub fn xyz_to_linear_srgb(xyz: [f64; 3]) -> [f64; 3] {
     XYZ_TO_LINEAR_SRGB.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2])
-}
-
-/// The matrix from XYZ to linear RGB for primaries and white given as chromaticities, Y of the
-/// white being 1 (SMPTE RP 177-1993). For [`REC_709`] its first element is 3.2409699.
-pub fn xyz_to_rgb_from_chromaticities(chromaticities: [[f64; 2]; 4]) -> [[f64; 3]; 3] {
-    let xyz = chromaticities.map(|[x, y]| glam::DVec3::new(x / y, 1.0, (1.0 - x - y) / y));
-    let primaries = glam::DMat3::from_cols(xyz[0], xyz[1], xyz[2]);
-    let weights = primaries.inverse() * xyz[3];
-    let to_xyz = primaries * glam::DMat3::from_diagonal(weights);
-    to_xyz.inverse().transpose().to_cols_array_2d()
 }

@@ -61,6 +61,7 @@ pub fn fit_reflectance(rgb: [f64; 3]) -> Result<RgbFit, RgbError> {
         spectrum: Spectrum::Sigmoid {
             coefficients,
             scale: 1.0,
+            d65: false,
         },
         residual,
     })
@@ -85,9 +86,10 @@ pub fn fit_emission(rgb: [f64; 3]) -> Result<RgbFit, RgbError> {
     let scale = 2.0 * largest;
     let (coefficients, residual) = fit(DVec3::from(rgb) / scale, DVec3::ONE);
     Ok(RgbFit {
-        spectrum: Spectrum::SigmoidD65 {
+        spectrum: Spectrum::Sigmoid {
             coefficients,
             scale,
+            d65: true,
         },
         residual: residual * scale,
     })

@@ -11,49 +11,24 @@ pub struct Table {
     pub values: Vec<f64>,
 }
 
-/// Why samples are not a table.
+/// Why samples are not a table; samples and lines are numbered from 1.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TableError {
-    /// There are no samples.
     #[error("a spectrum's table needs at least one sample")]
     Empty,
-    /// The two lists differ in length.
     #[error("{nm} wavelengths, but {values} values")]
-    Length {
-        /// Number of wavelengths.
-        nm: usize,
-        /// Number of values.
-        values: usize,
-    },
-    /// A wavelength does not exceed the one before it.
+    Length { nm: usize, values: usize },
+    /// A wavelength, nm, does not exceed the one before it.
     #[error(
         "wavelengths must increase strictly, but sample {number} has {nm} nm after {before} nm"
     )]
-    NotIncreasing {
-        /// Number of the sample, counted from 1.
-        number: usize,
-        /// Its wavelength.
-        nm: f64,
-        /// The wavelength before it.
-        before: f64,
-    },
-    /// A wavelength or value is infinite or no number.
+    NotIncreasing { number: usize, nm: f64, before: f64 },
+    /// A wavelength, nm, or its value is infinite or no number.
     #[error("sample {number} is not finite: {value} at {nm} nm")]
-    NotFinite {
-        /// Number of the sample, counted from 1.
-        number: usize,
-        /// Its wavelength.
-        nm: f64,
-        value: f64,
-    },
+    NotFinite { number: usize, nm: f64, value: f64 },
     /// A line of a CSV file is wrong.
     #[error("line {line}: {message}")]
-    Line {
-        /// Line of the file, counted from 1.
-        line: usize,
-        /// What is wrong with it.
-        message: String,
-    },
+    Line { line: usize, message: String },
 }
 
 impl Table {

@@ -1,23 +1,25 @@
 //! Gaps between objects that bounding boxes do not show: parallel faces, and round walls about one
 //! axis or centre.
 
-use glam::{DMat3, DVec3};
+use glam::DMat3;
 
 use crate::math::affine::{Affine, ROUNDED};
 use crate::shape::ShapeKind;
 
 fn linear(map: &Affine) -> DMat3 {
-    let row = |i: usize| DVec3::from_slice(&map.rows[i][..3]);
-    DMat3::from_cols(row(0), row(1), row(2)).transpose()
+    let [x, y, z] = map.columns();
+    DMat3::from_cols(x, y, z)
 }
 
 /// The smallest positive distance between two parallel faces, or two round walls of one kind that share
 /// their axis or centre; infinite where there are none. Faces count wherever they lie in their planes.
 pub fn gap(a: (ShapeKind, &Affine), b: (ShapeKind, &Affine)) -> f64 {
     let inverse = linear(a.1).inverse();
-    let place = |map: &Affine| DVec3::new(map.rows[0][3], map.rows[1][3], map.rows[2][3]);
     // b's canonical coordinates in a's.
-    let (between, shift) = (inverse * linear(b.1), inverse * (place(b.1) - place(a.1)));
+    let (between, shift) = (
+        inverse * linear(b.1),
+        inverse * (b.1.translation() - a.1.translation()),
+    );
     let mut smallest = f64::INFINITY;
     let mut take = |local: f64, axis: usize| {
         // What composed maps may round is contact.

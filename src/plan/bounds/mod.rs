@@ -1,8 +1,8 @@
 //! How far off positions may be, and what that must be small against.
 //!
 //! `positions` bounds the error of a hit, `shadows` that of a hard shadow's edge, `pixels` finds how near
-//! the pixels are that see it, and [`gaps`] finds the smallest distance between two objects. Each is an extreme over all
-//! objects by itself, so that another object can only make it worse.
+//! the camera an object is seen, and [`gaps`] finds the smallest distance between two objects. Each is an
+//! extreme over all objects by itself, so that another object can only make it worse.
 
 mod faces;
 pub mod gaps;
@@ -14,7 +14,7 @@ use glam::DVec3;
 
 use crate::camera::pixel_size;
 use crate::math::affine::Affine;
-use crate::scene::{Object, Projection, Scene, Shape};
+use crate::scene::{Object, Scene, Shape};
 use crate::shape::hierarchy::Bounds;
 use crate::shape::{Placed, ShapeKind};
 use positions::Error;
@@ -42,12 +42,12 @@ pub struct Blur {
 }
 
 impl Blur {
-    /// In arithmetic of unit roundoff `roundoff`.
+    /// Bounds for a scene in arithmetic of this unit roundoff.
     pub fn new(scene: &Scene, roundoff: f64) -> Self {
         let sites = sites(scene);
         let start = start(scene);
         let reach = sites.iter().map(Site::reach).fold(start, f64::max);
-        let central = matches!(scene.camera.projection, Projection::Perspective { .. });
+        let central = scene.camera.projection.kind.is_central();
         let pixel = pixel_size(&scene.camera.projection, scene.image.size[1]);
         let mut blur = Self {
             position: 0.0,
@@ -128,13 +128,12 @@ pub fn sites(scene: &Scene) -> Vec<Site> {
 /// How far from the camera's position its rays begin.
 fn start(scene: &Scene) -> f64 {
     let lens = scene.camera.lens.map_or(0.0, |lens| lens.radius);
-    match scene.camera.projection {
-        Projection::Perspective { .. } => lens,
-        Projection::Orthographic { height } => {
-            let [x, y] = scene.image.size.map(f64::from);
-            lens + height / 2.0 * (x / y).hypot(1.0)
-        }
+    let projection = scene.camera.projection;
+    if projection.kind.is_central() {
+        return lens;
     }
+    let [x, y] = scene.image.size.map(f64::from);
+    lens + projection.height() / 2.0 * (x / y).hypot(1.0)
 }
 
 /// The object's map with the camera at the origin.

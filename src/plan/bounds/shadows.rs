@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::{Site, pixels};
-use crate::scene::{Light, Projection, Scene};
+use crate::scene::{Place, Scene};
 use crate::shape::hierarchy::Bounds;
 
 /// Roundings of the direction of parallel light: one of each component.
@@ -20,11 +20,10 @@ const POINT: f64 = 4.0;
 /// The largest shift of a shadow's edge in arithmetic of unit roundoff `roundoff`, on what is within
 /// `reach`: as an angle from the camera in central projection, else in scene units.
 pub fn shift(scene: &Scene, sites: &[Site], roundoff: f64, reach: f64) -> f64 {
-    let central = matches!(scene.camera.projection, Projection::Perspective { .. });
+    let central = scene.camera.projection.kind.is_central();
     let receives = |site: &&Site| {
         let object = &scene.objects[site.index].value;
-        let material = &scene.materials[object.material].value;
-        material.surface.kind.is_spread()
+        scene.material_of(object).surface.kind.is_spread()
     };
     // Where receivers begin and end.
     let receivers = sites.iter().filter(receives).map(|site| {
@@ -33,16 +32,15 @@ pub fn shift(scene: &Scene, sites: &[Site], roundoff: f64, reach: f64) -> f64 {
     });
     let receivers: Vec<_> = receivers.collect();
     let casters: Vec<&Site> = sites.iter().filter(|site| site.bounds.is_some()).collect();
-    let of_light = |light: &Light| match light {
-        Light::Directional { .. } => {
-            let far = Greatest::of(&casters, farthest);
+    let of_light = |place: Place| match place {
+        Place::Towards(_) => {
+            let far = greatest(&casters, farthest);
             worst(&receivers, &far, central, |far, d| {
                 PARALLEL * roundoff * (far + d)
             })
         }
-        Light::Point { at, .. } => {
-            let at = *at - scene.camera.from;
-            let close = Greatest::of(&casters, |site| 1.0 / pixels::nearest(site, at));
+        Place::At(at) => {
+            let close = greatest(&casters, |site| 1.0 / pixels::nearest(site, at));
             // A ray that is aside by the angle e passes the light, at most L away, by eL; beyond an
             // object that is at least g from the light, the shadow is aside by no more than eL · L/g.
             worst(&receivers, &close, central, |close, d| {
@@ -50,22 +48,25 @@ pub fn shift(scene: &Scene, sites: &[Site], roundoff: f64, reach: f64) -> f64 {
             })
         }
     };
-    scene.lights.iter().map(of_light).fold(0.0, f64::max)
+    let places = scene.lights.iter();
+    let places = places.filter_map(|light| light.place(scene.camera.from));
+    places.map(of_light).fold(0.0, f64::max)
 }
 
 /// The worst shift over all receivers, where `shift` is that of a caster's number at a distance from the
 /// camera; over that distance it is largest at one of the ends.
 fn worst(
     receivers: &[(usize, [f64; 2])],
-    casters: &Greatest,
+    casters: &[(f64, usize)],
     central: bool,
     shift: impl Fn(f64, f64) -> f64,
 ) -> f64 {
     let of_receiver = |(index, ends): &(usize, [f64; 2])| {
-        let Some(caster) = casters.beside(*index) else {
+        // No object casts a shadow on itself here.
+        let Some((caster, _)) = casters.iter().find(|(_, own)| own != index) else {
             return 0.0;
         };
-        let seen = ends.map(|d| shift(caster, d) / if central { d } else { 1.0 });
+        let seen = ends.map(|d| shift(*caster, d) / if central { d } else { 1.0 });
         seen[0].max(seen[1])
     };
     receivers.iter().map(of_receiver).fold(0.0, f64::max)
@@ -77,27 +78,11 @@ fn farthest(site: &Site) -> f64 {
     site.bounds.as_ref().map_or(f64::INFINITY, corner)
 }
 
-/// The two greatest of the numbers that objects have, as no object casts a shadow on itself here.
-struct Greatest([Option<(f64, usize)>; 2]);
-
-impl Greatest {
-    fn of(sites: &[&Site], number: impl Fn(&Site) -> f64) -> Self {
-        let numbers = sites.iter().map(|site| (number(site), site.index));
-        Self(numbers.fold([None; 2], |[first, second], new| {
-            let above = |old: Option<(f64, usize)>| old.is_none_or(|old| new.0 > old.0);
-            if above(first) {
-                [Some(new), first]
-            } else if above(second) {
-                [first, Some(new)]
-            } else {
-                [first, second]
-            }
-        }))
-    }
-
-    /// The greatest of another object than this one.
-    fn beside(&self, index: usize) -> Option<f64> {
-        let mut others = self.0.iter().flatten();
-        others.find(|(_, own)| *own != index).map(|(x, _)| *x)
-    }
+/// The two greatest of the numbers that objects have, with the objects.
+fn greatest(sites: &[&Site], number: impl Fn(&Site) -> f64) -> Vec<(f64, usize)> {
+    let numbers = sites.iter().map(|site| (number(site), site.index));
+    let mut numbers: Vec<_> = numbers.collect();
+    numbers.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    numbers.truncate(2);
+    numbers
 }

@@ -6,7 +6,7 @@ use crate::math::interval::{Domain, Interval};
 use crate::math::jet::Jet;
 use crate::math::lanes::Real;
 
-/// The arithmetic of a program: intervals, or intervals with slopes.
+/// An arithmetic that evaluates programs.
 pub(super) trait Arithmetic<L: DoubleLanes>: Copy {
     fn constant(value: Interval<L>) -> Self;
     fn unary(self, function: Unary, domain: &mut Domain<L>) -> Self;
@@ -56,7 +56,7 @@ fn function_of_two<L: DoubleLanes>(
     }))
 }
 
-/// The slope of a function of one value: a′ times or over something.
+/// The slope of a function of one value: a′ times a factor, or a′ over a divisor.
 #[inline(never)]
 fn slope_of<L: DoubleLanes>(
     function: Unary,
@@ -93,19 +93,21 @@ fn slope_of<L: DoubleLanes>(
 /// A whole power: one copy for each instruction set.
 #[inline(never)]
 fn whole_power_of<L: DoubleLanes>(a: &Jet<L>, n: i32, domain: &mut Domain<L>) -> Jet<L> {
-    a.value
-        .lanes
-        .vectorize(inlined!(|| a.whole_power(n, domain)))
+    let l = a.value.lanes;
+    l.vectorize(inlined!(|| a.whole_power(n, domain)))
 }
 
 impl<L: DoubleLanes> Arithmetic<L> for Interval<L> {
-    #[inline(always)]
-    fn constant(value: Interval<L>) -> Self {
-        value
-    }
-    #[inline(always)]
-    fn unary(self, function: Unary, domain: &mut Domain<L>) -> Self {
-        function_of(function, &self, domain)
+    methods! {
+        fn constant(value: Interval<L>) -> Self = value;
+        fn unary(self, function: Unary, domain: &mut Domain<L>) -> Self =
+            function_of(function, &self, domain);
+        fn whole_power(self, n: i32, domain: &mut Domain<L>) -> Self =
+            whole_power_of(&Jet::constant(self), n, domain).value;
+        fn squared(self) -> Self = Interval::squared(self);
+        fn times_number(self, c: f64) -> Self = Interval::times_number(self, c);
+        fn plus_constant(self, c: Interval<L>) -> Self = self + c;
+        fn sine_cosine(self) -> (Self, Self) = self.sine_cosine_thin();
     }
     #[inline(always)]
     fn binary(self, function: Binary, other: Self, domain: &mut Domain<L>) -> Self {
@@ -121,33 +123,19 @@ impl<L: DoubleLanes> Arithmetic<L> for Interval<L> {
             }
         }
     }
-    #[inline(always)]
-    fn whole_power(self, n: i32, domain: &mut Domain<L>) -> Self {
-        whole_power_of(&Jet::constant(self), n, domain).value
-    }
-    #[inline(always)]
-    fn squared(self) -> Self {
-        Interval::squared(self)
-    }
-    #[inline(always)]
-    fn times_number(self, c: f64) -> Self {
-        Interval::times_number(self, c)
-    }
-    #[inline(always)]
-    fn plus_constant(self, c: Interval<L>) -> Self {
-        self + c
-    }
-    #[inline(always)]
-    fn sine_cosine(self) -> (Self, Self) {
-        self.sine_cosine_thin()
-    }
 }
 
 impl<L: DoubleLanes> Arithmetic<L> for Jet<L> {
-    #[inline(always)]
-    fn constant(value: Interval<L>) -> Self {
-        let slope = Interval::splat(value.lanes, [0.0, 0.0]);
-        Self { value, slope }
+    methods! {
+        fn constant(value: Interval<L>) -> Self =
+            Self::new(value, Interval::splat(value.lanes, [0.0, 0.0]));
+        fn whole_power(self, n: i32, domain: &mut Domain<L>) -> Self =
+            whole_power_of(&self, n, domain);
+        fn squared(self) -> Self =
+            self.chained(self.value.squared(), self.value.times_number(2.0));
+        fn times_number(self, c: f64) -> Self =
+            Self::new(self.value.times_number(c), self.slope.times_number(c));
+        fn plus_constant(self, c: Interval<L>) -> Self = Self::new(self.value + c, self.slope);
     }
     #[inline(always)]
     fn unary(self, function: Unary, domain: &mut Domain<L>) -> Self {
@@ -155,8 +143,7 @@ impl<L: DoubleLanes> Arithmetic<L> for Jet<L> {
             return self.absolute();
         }
         let value = function_of(function, &self.value, domain);
-        let slope = slope_of(function, &self, &value, domain);
-        Jet { value, slope }
+        Self::new(value, slope_of(function, &self, &value, domain))
     }
     #[inline(always)]
     fn binary(self, function: Binary, other: Self, domain: &mut Domain<L>) -> Self {
@@ -175,30 +162,8 @@ impl<L: DoubleLanes> Arithmetic<L> for Jet<L> {
                 } else {
                     self.slope_of_angle(other)
                 };
-                Jet { value, slope }
+                Self::new(value, slope)
             }
-        }
-    }
-    #[inline(always)]
-    fn whole_power(self, n: i32, domain: &mut Domain<L>) -> Self {
-        whole_power_of(&self, n, domain)
-    }
-    #[inline(always)]
-    fn squared(self) -> Self {
-        self.chained(self.value.squared(), self.value.times_number(2.0))
-    }
-    #[inline(always)]
-    fn times_number(self, c: f64) -> Self {
-        Self {
-            value: self.value.times_number(c),
-            slope: self.slope.times_number(c),
-        }
-    }
-    #[inline(always)]
-    fn plus_constant(self, c: Interval<L>) -> Self {
-        Self {
-            value: self.value + c,
-            ..self
         }
     }
     #[inline(always)]
@@ -213,9 +178,11 @@ impl<L: DoubleLanes> Arithmetic<L> for Jet<L> {
 pub struct Side<L: DoubleLanes>(pub(super) Interval<L>);
 
 impl<L: DoubleLanes> Arithmetic<L> for Side<L> {
-    #[inline(always)]
-    fn constant(value: Interval<L>) -> Self {
-        Self(value)
+    methods! {
+        fn constant(value: Interval<L>) -> Self = Self(value);
+        fn squared(self) -> Self = Self(self.0.squared());
+        fn times_number(self, c: f64) -> Self = Self(self.0.times_number(c));
+        fn plus_constant(self, c: Interval<L>) -> Self = Self(self.0 + c);
     }
     #[inline(always)]
     fn unary(self, function: Unary, domain: &mut Domain<L>) -> Self {
@@ -237,10 +204,7 @@ impl<L: DoubleLanes> Arithmetic<L> for Side<L> {
     }
     #[inline(always)]
     fn whole_power(self, n: i32, domain: &mut Domain<L>) -> Self {
-        if n >= 0 {
-            return Self(Arithmetic::whole_power(self.0, n, domain));
-        }
-        let Some(side) = domain.next_side() else {
+        let Some(side) = (n < 0).then(|| domain.next_side()).flatten() else {
             return Self(Arithmetic::whole_power(self.0, n, domain));
         };
         let l = self.0.lanes;
@@ -250,24 +214,11 @@ impl<L: DoubleLanes> Arithmetic<L> for Side<L> {
         let lower = Interval::new(l, self.0.low, self.0.high.min(zero));
         let empty = side & !self.0.high.gt(zero) | !side & !self.0.low.lt(zero);
         domain.note(l.mask(false), empty);
-        let power = upper
-            .or_where_not(side, lower)
-            .whole_power(n.saturating_neg());
+        let base = upper.or_where_not(side, lower);
+        let power = base.whole_power(n.saturating_neg());
         let positive = if n % 2 == 0 { l.mask(true) } else { side };
         let one = Interval::splat(l, [1.0, 1.0]);
         Self(one.quotient_beside_zero(power, positive, domain))
-    }
-    #[inline(always)]
-    fn squared(self) -> Self {
-        Self(self.0.squared())
-    }
-    #[inline(always)]
-    fn times_number(self, c: f64) -> Self {
-        Self(self.0.times_number(c))
-    }
-    #[inline(always)]
-    fn plus_constant(self, c: Interval<L>) -> Self {
-        Self(self.0 + c)
     }
     #[inline(always)]
     fn sine_cosine(self) -> (Self, Self) {

@@ -7,6 +7,7 @@ use super::vector::{compares_once, lanes, mask, real, reversed_bytes};
 use super::{Int, Lanes, Mask, Real};
 use crate::math::instructions::Instructions;
 use crate::math::lookup::{self, SMALL};
+use crate::math::scalar_lane::SHIFT;
 
 /// Double precision: f64 × 8.
 #[derive(Clone, Copy)]
@@ -23,33 +24,15 @@ fn low32<S: Simd>(x: u64x8<S>) -> u64x8<S> {
 
 impl<S: Simd> Int for u64x8<S> {
     type Mask = mask64x8<S>;
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        low32(self + other)
-    }
-    #[inline(always)]
-    fn minus(self, other: Self) -> Self {
-        low32(self - other)
-    }
-    #[inline(always)]
-    fn times(self, other: Self) -> Self {
-        low32(self * other)
-    }
-    #[inline(always)]
-    fn left(self, by: u32) -> Self {
-        low32(self << by)
-    }
-    #[inline(always)]
-    fn right(self, by: u32) -> Self {
-        self >> by
-    }
-    #[inline(always)]
-    fn reversed(self) -> Self {
-        reversed_bytes(self.token(), self.bitcast()).bitcast()
-    }
-    delegate! {
-        fn same(self, other) -> Self::Mask = Self::simd_eq;
-        fn below(self, other) -> Self::Mask = Self::simd_lt;
+    methods! {
+        fn plus(self, other: Self) -> Self = low32(self + other);
+        fn minus(self, other: Self) -> Self = low32(self - other);
+        fn times(self, other: Self) -> Self = low32(self * other);
+        fn left(self, by: u32) -> Self = low32(self << by);
+        fn right(self, by: u32) -> Self = self >> by;
+        fn reversed(self) -> Self = reversed_bytes(self.token(), self.bitcast()).bitcast();
+        fn same(self, other: Self) -> Self::Mask = self.simd_eq(other);
+        fn below(self, other: Self) -> Self::Mask = self.simd_lt(other);
     }
 }
 
@@ -63,9 +46,10 @@ impl<S: Simd> Lanes for Double<S> {
     const UNIFORM_BITS: u32 = 32;
     lanes!(f64x8, mask64x8, f64, 8);
 
-    #[inline(always)]
-    fn int(self, x: u32) -> Self::Int {
-        u64x8::splat(self.0, x.into())
+    methods! {
+        fn int(self, x: u32) -> Self::Int = u64x8::splat(self.0, x.into());
+        fn int_lane(self, x: Self::Int, i: usize) -> u32 = x[i & 7] as u32;
+        fn lookup(self, table: &[f64; SMALL], i: Self::Int) -> Self::Real = lookup::double(self.0, table, i);
     }
     #[inline(always)]
     fn load_int(self, from: &[u32]) -> Self::Int {
@@ -83,10 +67,6 @@ impl<S: Simd> Lanes for Double<S> {
         }
     }
     #[inline(always)]
-    fn lookup(self, table: &[f64; SMALL], index: Self::Int) -> Self::Real {
-        lookup::double(self.0, table, index)
-    }
-    #[inline(always)]
     fn lookup_int(self, table: &[u32; SMALL], index: Self::Int) -> Self::Int {
         let index: [u64; 8] = index.into();
         let mut out = [0; 8];
@@ -96,26 +76,20 @@ impl<S: Simd> Lanes for Double<S> {
         u64x8::simd_from(self.0, out)
     }
     #[inline(always)]
-    fn int_lane(self, x: Self::Int, i: usize) -> u32 {
-        x[i & 7] as u32
-    }
-    #[inline(always)]
     fn with_int_lane(self, mut x: Self::Int, i: usize, value: u32) -> Self::Int {
         x[i & 7] = value.into();
         x
     }
     #[inline(always)]
     fn truncate(self, x: Self::Real) -> Self::Int {
-        // Adding 2⁵² puts the integer part into the low bits of the significand.
-        let shifted = SimdFloat::floor(x) + self.real(4_503_599_627_370_496.0);
-        let bits: u64x8<S> = shifted.bitcast();
-        low32(bits)
+        low32((SimdFloat::floor(x) + self.real(SHIFT)).bitcast())
     }
     #[inline(always)]
     fn to_real(self, x: Self::Int) -> Self::Real {
-        let shifted = x | u64x8::splat(self.0, 0x4330_0000_0000_0000);
+        // The bits of 2⁵² with the integer as its lowest digits.
+        let shifted = x | u64x8::splat(self.0, SHIFT.to_bits());
         let real: f64x8<S> = shifted.bitcast();
-        real - self.real(4_503_599_627_370_496.0)
+        real - self.real(SHIFT)
     }
     #[inline(always)]
     fn split_exponent(self, x: Self::Real) -> (Self::Real, Self::Real) {
@@ -128,7 +102,7 @@ impl<S: Simd> Lanes for Double<S> {
     #[inline(always)]
     fn power_of_two(self, e: Self::Real) -> Self::Real {
         // The sum's low bits are the biased exponent; the shift leaves nothing else.
-        let biased: u64x8<S> = (e + self.real(4_503_599_627_370_496.0 + 1023.0)).bitcast();
+        let biased: u64x8<S> = (e + self.real(SHIFT + 1023.0)).bitcast();
         (biased << 52).bitcast()
     }
 }

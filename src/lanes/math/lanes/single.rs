@@ -1,7 +1,5 @@
 //! Lanes of f32, sixteen to a packet.
 
-use std::ops::{Add, Mul, Sub};
-
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x16, i32x16, mask32x16, u32x16};
 
@@ -19,24 +17,15 @@ real!(f32x16, mask32x16);
 
 impl<S: Simd> Int for u32x16<S> {
     type Mask = mask32x16<S>;
-    delegate! {
-        fn plus(self, other) -> Self = Add::add;
-        fn minus(self, other) -> Self = Sub::sub;
-        fn times(self, other) -> Self = Mul::mul;
-        fn same(self, other) -> Self::Mask = Self::simd_eq;
-        fn below(self, other) -> Self::Mask = Self::simd_lt;
-    }
-    #[inline(always)]
-    fn left(self, by: u32) -> Self {
-        self << by
-    }
-    #[inline(always)]
-    fn right(self, by: u32) -> Self {
-        self >> by
-    }
-    #[inline(always)]
-    fn reversed(self) -> Self {
-        reversed_bytes(self.token(), self.bitcast()).bitcast()
+    methods! {
+        fn plus(self, other: Self) -> Self = self + other;
+        fn minus(self, other: Self) -> Self = self - other;
+        fn times(self, other: Self) -> Self = self * other;
+        fn left(self, by: u32) -> Self = self << by;
+        fn right(self, by: u32) -> Self = self >> by;
+        fn reversed(self) -> Self = reversed_bytes(self.token(), self.bitcast()).bitcast();
+        fn same(self, other: Self) -> Self::Mask = self.simd_eq(other);
+        fn below(self, other: Self) -> Self::Mask = self.simd_lt(other);
     }
 }
 
@@ -50,17 +39,11 @@ impl<S: Simd> Lanes for Single<S> {
     const UNIFORM_BITS: u32 = 24;
     lanes!(f32x16, mask32x16, f32, 16);
 
-    #[inline(always)]
-    fn int(self, x: u32) -> Self::Int {
-        u32x16::splat(self.0, x)
-    }
-    #[inline(always)]
-    fn load_int(self, from: &[u32]) -> Self::Int {
-        u32x16::from_slice(self.0, &from[..16])
-    }
-    #[inline(always)]
-    fn store_int(self, x: Self::Int, to: &mut [u32]) {
-        x.store_slice(&mut to[..16]);
+    methods! {
+        fn int(self, x: u32) -> Self::Int = u32x16::splat(self.0, x);
+        fn load_int(self, from: &[u32]) -> Self::Int = u32x16::from_slice(self.0, &from[..16]);
+        fn store_int(self, x: Self::Int, to: &mut [u32]) -> () = x.store_slice(&mut to[..16]);
+        fn int_lane(self, x: Self::Int, i: usize) -> u32 = x[i & 15];
     }
     #[inline(always)]
     fn lookup(self, table: &[f32; SMALL], index: Self::Int) -> Self::Real {
@@ -70,10 +53,6 @@ impl<S: Simd> Lanes for Single<S> {
     #[inline(always)]
     fn lookup_int(self, table: &[u32; SMALL], index: Self::Int) -> Self::Int {
         lookup::single(self.0, u32x16::from_slice(self.0, table), index)
-    }
-    #[inline(always)]
-    fn int_lane(self, x: Self::Int, i: usize) -> u32 {
-        x[i & 15]
     }
     #[inline(always)]
     fn with_int_lane(self, mut x: Self::Int, i: usize, value: u32) -> Self::Int {

@@ -14,13 +14,9 @@ macro_rules! mask {
     ($mask:ident, $count:literal) => {
         impl<S: Simd> Mask for $mask<S> {
             const COUNT: u32 = $count;
-            #[inline(always)]
-            fn any(self) -> bool {
-                self.any_true()
-            }
-            #[inline(always)]
-            fn bits(self) -> u32 {
-                self.to_bitmask() as u32
+            methods! {
+                fn any(self) -> bool = self.any_true();
+                fn bits(self) -> u32 = self.to_bitmask() as u32;
             }
         }
     };
@@ -30,18 +26,18 @@ macro_rules! real {
     ($real:ident, $mask:ident) => {
         impl<S: Simd> Real for $real<S> {
             type Mask = $mask<S>;
-            delegate! {
-                fn mul_add(self, a, b) -> Self = Self::mul_add_precise;
-                fn sqrt(self) -> Self = SimdFloat::sqrt;
-                fn abs(self) -> Self = SimdBase::abs;
-                fn floor(self) -> Self = SimdFloat::floor;
-                fn round(self) -> Self = SimdFloat::round_ties_even;
-                fn copysign(self, sign) -> Self = SimdFloat::copysign;
-                fn lt(self, other) -> Self::Mask = Self::simd_lt;
-                fn le(self, other) -> Self::Mask = Self::simd_le;
-                fn gt(self, other) -> Self::Mask = Self::simd_gt;
-                fn ge(self, other) -> Self::Mask = Self::simd_ge;
-                fn same(self, other) -> Self::Mask = Self::simd_eq;
+            methods! {
+                fn mul_add(self, a: Self, b: Self) -> Self = self.mul_add_precise(a, b);
+                fn sqrt(self) -> Self = SimdFloat::sqrt(self);
+                fn abs(self) -> Self = SimdBase::abs(self);
+                fn floor(self) -> Self = SimdFloat::floor(self);
+                fn round(self) -> Self = self.round_ties_even();
+                fn copysign(self, sign: Self) -> Self = SimdFloat::copysign(self, sign);
+                fn lt(self, other: Self) -> Self::Mask = self.simd_lt(other);
+                fn le(self, other: Self) -> Self::Mask = self.simd_le(other);
+                fn gt(self, other: Self) -> Self::Mask = self.simd_gt(other);
+                fn ge(self, other: Self) -> Self::Mask = self.simd_ge(other);
+                fn same(self, other: Self) -> Self::Mask = self.simd_eq(other);
             }
             #[inline(always)]
             fn min(self, other: Self) -> Self {
@@ -63,61 +59,30 @@ macro_rules! real {
     };
 }
 
-/// The methods of [`super::Lanes`] that are alike.
+/// The methods of [`super::Lanes`] that both precisions have in common.
 macro_rules! lanes {
     ($real:ident, $mask:ident, $scalar:ty, $count:literal) => {
-        #[inline(always)]
-        fn instructions(self) -> Instructions {
-            Instructions::of(self.0.level())
-        }
-        #[inline(always)]
-        fn narrow(self) -> Self {
-            self
+        methods! {
+            fn instructions(self) -> Instructions = Instructions::of(self.0.level());
+            fn narrow(self) -> Self = self;
+            fn real(self, x: f64) -> Self::Real = $real::splat(self.0, x as $scalar);
+            fn splat(self, x: $scalar) -> Self::Real = $real::splat(self.0, x);
+            fn mask(self, x: bool) -> Self::Mask = $mask::splat(self.0, x);
+            fn mask_from_bits(self, bits: u32) -> Self::Mask = $mask::from_bitmask(self.0, bits.into());
+            fn load(self, from: &[$scalar]) -> Self::Real = $real::from_slice(self.0, &from[..$count]);
+            fn store(self, x: Self::Real, to: &mut [$scalar]) -> () = x.store_slice(&mut to[..$count]);
+            fn lane(self, x: Self::Real, i: usize) -> $scalar = x[i & ($count - 1)];
+            fn select(self, m: Self::Mask, a: Self::Real, b: Self::Real) -> Self::Real = m.select(a, b);
+            fn select_int(self, m: Self::Mask, a: Self::Int, b: Self::Int) -> Self::Int = m.select(a, b);
         }
         #[inline(always)]
         fn vectorize<R>(self, f: impl FnOnce() -> R) -> R {
             self.0.vectorize(f)
         }
         #[inline(always)]
-        fn real(self, x: f64) -> Self::Real {
-            $real::splat(self.0, x as $scalar)
-        }
-        #[inline(always)]
-        fn splat(self, x: $scalar) -> Self::Real {
-            $real::splat(self.0, x)
-        }
-        #[inline(always)]
-        fn mask(self, x: bool) -> Self::Mask {
-            $mask::splat(self.0, x)
-        }
-        #[inline(always)]
-        fn mask_from_bits(self, bits: u32) -> Self::Mask {
-            $mask::from_bitmask(self.0, bits.into())
-        }
-        #[inline(always)]
-        fn load(self, from: &[$scalar]) -> Self::Real {
-            $real::from_slice(self.0, &from[..$count])
-        }
-        #[inline(always)]
-        fn store(self, x: Self::Real, to: &mut [$scalar]) {
-            x.store_slice(&mut to[..$count]);
-        }
-        #[inline(always)]
-        fn lane(self, x: Self::Real, i: usize) -> $scalar {
-            x[i & ($count - 1)]
-        }
-        #[inline(always)]
         fn with_lane(self, mut x: Self::Real, i: usize, value: $scalar) -> Self::Real {
             x[i & ($count - 1)] = value;
             x
-        }
-        #[inline(always)]
-        fn select(self, m: Self::Mask, a: Self::Real, b: Self::Real) -> Self::Real {
-            m.select(a, b)
-        }
-        #[inline(always)]
-        fn select_int(self, m: Self::Mask, a: Self::Int, b: Self::Int) -> Self::Int {
-            m.select(a, b)
         }
         #[inline(always)]
         fn compress_into(self, x: Self::Real, keep: Self::Mask, to: &mut [$scalar]) {
@@ -132,8 +97,8 @@ macro_rules! lanes {
 
 pub(super) use {lanes, mask, real};
 
-/// Reverses the order of the low 32 bits of each number of 32 or 64: of the bits in each byte, and of
-/// the bytes in each four.
+/// Reverses the order of the bits in each byte and of the bytes in each group of four: of the low 32
+/// bits of numbers of 32 or 64 bits.
 #[inline(always)]
 pub fn reversed_bytes<S: Simd>(simd: S, bytes: u8x64<S>) -> u8x64<S> {
     const ORDER: [u8; 16] = [3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12];

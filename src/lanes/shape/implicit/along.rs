@@ -72,6 +72,15 @@ impl<'a, L: DoubleLanes> Along<'a, L> {
     }
 
     #[inline(always)]
+    fn coordinates(&self, s: &Interval<L>) -> [Interval<L>; 3] {
+        [
+            self.coordinate(0, s),
+            self.coordinate(1, s),
+            self.coordinate(2, s),
+        ]
+    }
+
+    #[inline(always)]
     fn jet(&self, axis: usize, s: &Interval<L>) -> Jet<L> {
         Jet {
             value: self.coordinate(axis, s),
@@ -97,11 +106,7 @@ impl<'a, L: DoubleLanes> Along<'a, L> {
     fn at_lanes(&mut self, t: &[f64], place: usize, values: &mut [[f64; PIECES]; 2]) {
         let l = self.lanes;
         let s = Interval::point(l, l.load(t));
-        let coordinates = [
-            self.coordinate(0, &s),
-            self.coordinate(1, &s),
-            self.coordinate(2, &s),
-        ];
+        let coordinates = self.coordinates(&s);
         let (value, domain) = self.program.value(l, &coordinates, &mut self.values);
         let value = value.whole_where(domain.broken | domain.void);
         l.store(value.low, &mut values[0][place..]);
@@ -137,11 +142,7 @@ impl<L: DoubleLanes> Enclosed for Along<'_, L> {
             lanes,
             inlined!(|| {
                 let s = Interval::splat(lanes, [from, to]);
-                let coordinates = [
-                    self.coordinate(0, &s),
-                    self.coordinate(1, &s),
-                    self.coordinate(2, &s),
-                ];
+                let coordinates = self.coordinates(&s);
                 for place in (0..PIECES).step_by(L::COUNT) {
                     let (value, void) =
                         self.program

@@ -14,9 +14,8 @@ use crate::math::double_double::DoubleDouble;
 use crate::math::number::{Number, power_of_two};
 use crate::root::sign_change::first_change;
 use crate::shape::implicit::Implicit;
-use crate::shape::implicit::certified::Tier;
 use crate::shape::ladder::{Ladder, ScaledRay};
-use crate::shape::{Query, Ray, SingularMatrix};
+use crate::shape::{Query, Ray, SingularMatrix, Tier};
 
 #[derive(Debug, Clone)]
 pub struct SteppingFinder {
@@ -43,18 +42,6 @@ pub struct ImplicitHit {
     pub multiplicity: Option<u32>,
     /// What has decided; `None` where nothing is proved.
     pub tier: Option<Tier>,
-}
-
-#[derive(Clone, Copy)]
-struct Line {
-    origin: DVec3,
-    direction: DVec3,
-}
-
-impl Line {
-    fn at(&self, t: f64) -> DVec3 {
-        self.origin + self.direction * t
-    }
 }
 
 impl SteppingFinder {
@@ -86,7 +73,7 @@ impl SteppingFinder {
         let scaled_t = self.first_root(&line, limits, query.t_min == 0.0)?;
         let t = scaled_t / unit;
         let normal = self.normal(line.at(scaled_t), line.direction);
-        let point = query.ray.origin + query.ray.direction * t;
+        let point = query.ray.at(t);
         (t.is_finite() && point.is_finite()).then_some(ImplicitHit {
             t,
             point,
@@ -128,7 +115,7 @@ impl SteppingFinder {
     /// large terms, so it is moved back onto the surface by a Newton step along the gradient; where
     /// the gradient says nothing the point stays where it is.
     pub fn point_at(&self, ray: &Ray, t: f64) -> DVec3 {
-        let plain = ray.origin + ray.direction * t;
+        let plain = ray.at(t);
         let scaled = ScaledRay::new(ray);
         let line = self.local(&scaled);
         let scaled_t = t * power_of_two(scaled.exponent());
@@ -146,19 +133,19 @@ impl SteppingFinder {
     }
 
     /// The ray in object coordinates, rounded once from double-double.
-    fn local(&self, ray: &ScaledRay) -> Line {
+    fn local(&self, ray: &ScaledRay) -> Ray {
         let line = self.ladder.double_double.local(ray);
         let divided = |v: &[DoubleDouble; 3]| {
             DVec3::from_array(v.each_ref().map(|x| x.divided_by(&line.scale).to_f64()))
         };
-        Line {
+        Ray {
             origin: divided(&line.origin),
             direction: divided(&line.direction),
         }
     }
 
     /// Of the ends of a change of sign, between which no f64 lies, the one with the smaller |field|.
-    fn first_root(&self, line: &Line, limits: [f64; 2], from_zero: bool) -> Option<f64> {
+    fn first_root(&self, line: &Ray, limits: [f64; 2], from_zero: bool) -> Option<f64> {
         let [t_min, t_max] = limits;
         let [near, far] = self.clip(line, limits)?;
         let value = |t: f64| self.field.value(line.at(t));
@@ -173,7 +160,7 @@ impl SteppingFinder {
     }
 
     /// The part of the line within the closed clip box and the limits.
-    fn clip(&self, line: &Line, [mut near, mut far]: [f64; 2]) -> Option<[f64; 2]> {
+    fn clip(&self, line: &Ray, [mut near, mut far]: [f64; 2]) -> Option<[f64; 2]> {
         let [lower, upper] = self.inside;
         for axis in 0..3 {
             let (o, d) = (line.origin[axis], line.direction[axis]);

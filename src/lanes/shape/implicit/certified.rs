@@ -11,18 +11,17 @@ mod exact;
 mod kernel;
 mod normal;
 mod place;
-mod stream;
 
 use glam::DVec3;
 
-pub use place::{Certified, Limits};
+pub use place::Certified;
 
 use crate::math::instructions::{DoubleLanes, Instructions, Job};
 use crate::math::number::{binary_exponent, power_of_two};
 use crate::math::packet::each;
 use crate::math::words::{Pair, Plain, Row};
 use crate::root::exact::ExactRoot;
-use crate::shape::Ray;
+use crate::shape::{Ray, Tier};
 use exact::ExactStart;
 
 /// Lanes of a packet.
@@ -83,14 +82,6 @@ impl Packet {
     }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
-pub enum Tier {
-    #[default]
-    Double,
-    DoubleDouble,
-    Exact,
-}
-
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Answers {
     pub found: u32,
@@ -116,7 +107,7 @@ pub struct Answers {
 pub const SHARP: f64 = 1e-12;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Wish {
+pub struct Effort {
     /// Enclosures that f64 leaves blurred are sharpened in double-double.
     pub sharp: bool,
     /// What double-double leaves undecided is decided exactly.
@@ -170,10 +161,20 @@ impl Job<f64> for Ask<'_> {
 
 impl Certified {
     /// The first hits of a packet, by the cheapest arithmetic that is certain of each.
-    pub fn first_hits(&self, packet: &Packet, wish: Wish, workspace: &mut Workspace) -> Answers {
+    pub fn first_hits(
+        &self,
+        packet: &Packet,
+        effort: Effort,
+        workspace: &mut Workspace,
+    ) -> Answers {
         let mut answers = self.in_lanes(packet, packet.active, false, workspace);
         let mut open = packet.active & !(answers.found | answers.absent);
-        let again = answers.unfinished(packet, wish);
+        let blurred = if effort.sharp {
+            answers.blurred & answers.found
+        } else {
+            0
+        };
+        let again = open | blurred;
         if again != 0 {
             let sharper = self.in_lanes(packet, again, true, workspace);
             let decided = sharper.found | sharper.absent;
@@ -183,10 +184,12 @@ impl Certified {
             }
             open &= !decided;
         }
-        if wish.exact {
+        if effort.exact {
             for lane in each(open) {
                 answers.tiers[lane] = Tier::Exact;
-                self.settle(packet, lane, &mut answers, workspace);
+                if !self.multiple_root(packet, lane, &mut answers, workspace) {
+                    self.decide(packet, lane, &mut answers);
+                }
             }
         }
         answers
@@ -195,20 +198,6 @@ impl Certified {
     /// The first hit of a ray by exact arithmetic alone, as the truth that others are judged by.
     pub fn exactly(&self, ray: &Ray, limits: [f64; 2]) -> Option<ExactRoot> {
         exact::first_hit(self, ray, limits, ExactStart::Free, f64::NAN)
-    }
-
-    /// A lane that double-double leaves undecided.
-    #[cold]
-    fn settle(
-        &self,
-        packet: &Packet,
-        lane: usize,
-        answers: &mut Answers,
-        workspace: &mut Workspace,
-    ) {
-        if !self.multiple_root(packet, lane, answers, workspace) {
-            self.decide(packet, lane, answers);
-        }
     }
 
     fn in_lanes(
@@ -287,11 +276,11 @@ impl Certified {
 
     /// Whether the point at t is in the clip box with room to spare.
     fn surely_inside(&self, ray: &Ray, t: f64) -> bool {
-        let p = ray.origin + ray.direction * t;
+        let p = ray.at(t);
         (0..3).all(|i| {
             let row = &self.inverse[0].rows[i];
             let x = row[0][0] * p.x + row[1][0] * p.y + row[2][0] * p.z + row[3][0];
-            x - self.clip.lower[i] > self.margin && self.clip.upper[i] - x > self.margin
+            x - self.clip[0][i] > self.margin && self.clip[1][i] - x > self.margin
         })
     }
 
@@ -322,28 +311,17 @@ impl Certified {
 }
 
 impl Answers {
+    /// Takes a lane of other answers, all but its tier.
     fn take(&mut self, from: &Self, lane: usize) {
-        self.take_from(from, lane, lane);
-    }
-
-    /// Takes lane `at` of other answers as lane `to`.
-    fn take_from(&mut self, from: &Self, at: usize, to: usize) {
-        let bit = |set: u32| (set >> at & 1) << to;
-        self.found = self.found & !(1 << to) | bit(from.found);
-        self.absent = self.absent & !(1 << to) | bit(from.absent);
-        self.t[to] = from.t[at];
-        self.low[to] = from.low[at];
-        self.high[to] = from.high[at];
-        self.multiplicity[to] = from.multiplicity[at];
-        self.doubt[to] = from.doubt[at];
-        self.stretch[to] = from.stretch[at];
-    }
-
-    /// Lanes that are to be asked again: undecided ones, and blurred ones if wished.
-    fn unfinished(&self, packet: &Packet, wish: Wish) -> u32 {
-        let open = packet.active & !(self.found | self.absent);
-        let blurred = self.blurred & self.found;
-        open | if wish.sharp { blurred } else { 0 }
+        let bit = 1 << lane;
+        self.found = self.found & !bit | from.found & bit;
+        self.absent = self.absent & !bit | from.absent & bit;
+        self.t[lane] = from.t[lane];
+        self.low[lane] = from.low[lane];
+        self.high[lane] = from.high[lane];
+        self.multiplicity[lane] = from.multiplicity[lane];
+        self.doubt[lane] = from.doubt[lane];
+        self.stretch[lane] = from.stretch[lane];
     }
 }
 

@@ -5,7 +5,6 @@ pub mod baseline;
 pub mod certified;
 pub mod clip;
 pub mod enclosed;
-pub mod enclosed_packet;
 pub mod placed;
 
 use std::sync::Arc;

@@ -2,11 +2,11 @@
 
 pub use super::baseline::ImplicitHit;
 use super::baseline::SteppingFinder;
-use super::certified::{Answers, Certified, Packet, Tier, Wish, Workspace};
-use super::enclosed_packet::EnclosedPacket;
+use super::certified::{Answers, Certified, Effort, Packet, Workspace};
+use super::enclosed::{EnclosedPacket, Method};
 use crate::math::affine::Affine;
 use crate::shape::implicit::{FinderChoice, Implicit};
-use crate::shape::{Query, Ray, SingularMatrix};
+use crate::shape::{Query, Ray, SingularMatrix, Tally};
 
 use glam::DVec3;
 
@@ -19,9 +19,8 @@ pub enum Finder {
         /// Whether what double-double leaves undecided is decided exactly.
         exact: bool,
     },
-    Interval(Box<EnclosedPacket>),
-    /// Sphere tracing with a proved bound.
-    SphereTrace(Box<EnclosedPacket>),
+    /// Interval subdivision, or sphere tracing with a proved bound.
+    Enclosed(Box<EnclosedPacket>),
 }
 
 impl Finder {
@@ -31,29 +30,24 @@ impl Finder {
     /// # Errors
     /// [`SingularMatrix`] where the matrix is singular or has an entry that is not finite.
     pub fn new(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
+        let enclosed = |method| {
+            let placed = EnclosedPacket::new(implicit, to_world, method)?;
+            Ok(Self::Enclosed(Box::new(placed)))
+        };
         let exact = match implicit.finder {
             FinderChoice::Auto => true,
             FinderChoice::Polynomial => false,
             FinderChoice::SignChange => return Ok(Self::SignChange),
-            FinderChoice::Interval => return Self::interval(implicit, to_world),
-            FinderChoice::SphereTrace => {
-                let placed = EnclosedPacket::by_spheres(implicit, to_world)?;
-                return Ok(Self::SphereTrace(Box::new(placed)));
-            }
+            FinderChoice::Interval => return enclosed(Method::Subdivision),
+            FinderChoice::SphereTrace => return enclosed(Method::Spheres),
         };
-        let certified = Certified::new(&implicit.field.tape, implicit.inside, to_world)?;
-        match certified {
+        match Certified::new(&implicit.field.tape, implicit.inside, to_world)? {
             Some(certified) => Ok(Self::Polynomial {
                 certified: Box::new(certified),
                 exact,
             }),
-            None => Self::interval(implicit, to_world),
+            None => enclosed(Method::Subdivision),
         }
-    }
-
-    fn interval(implicit: &Implicit, to_world: &Affine) -> Result<Self, SingularMatrix> {
-        let placed = EnclosedPacket::by_subdivision(implicit, to_world)?;
-        Ok(Self::Interval(Box::new(placed)))
     }
 
     /// The first hits of a packet; `None` from the finder that proves nothing. `sharp` asks for
@@ -67,15 +61,13 @@ impl Finder {
         match self {
             Self::SignChange => None,
             Self::Polynomial { certified, exact } => {
-                let wish = Wish {
+                let effort = Effort {
                     sharp,
                     exact: *exact,
                 };
-                Some(certified.first_hits(packet, wish, workspace))
+                Some(certified.first_hits(packet, effort, workspace))
             }
-            Self::Interval(enclosed) | Self::SphereTrace(enclosed) => {
-                Some(enclosed.first_hits(workspace.instructions, packet))
-            }
+            Self::Enclosed(enclosed) => Some(enclosed.first_hits(workspace.instructions, packet)),
         }
     }
 
@@ -83,45 +75,11 @@ impl Finder {
         match self {
             Self::SignChange => "sign-change",
             Self::Polynomial { .. } => "polynomial",
-            Self::Interval(_) => "interval",
-            Self::SphereTrace(_) => "sphere-trace",
+            Self::Enclosed(enclosed) => match enclosed.method {
+                Method::Subdivision => "interval",
+                Method::Spheres => "sphere-trace",
+            },
         }
-    }
-}
-
-/// How many rays each arithmetic has decided, over all implicit surfaces.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct ImplicitTally {
-    pub double: u64,
-    pub double_double: u64,
-    pub exact: u64,
-    pub undecided: u64,
-    /// Answered without proof.
-    pub uncertified: u64,
-}
-
-impl ImplicitTally {
-    pub fn count(&mut self, tier: Option<Tier>) {
-        match tier {
-            Some(Tier::Double) => self.double += 1,
-            Some(Tier::DoubleDouble) => self.double_double += 1,
-            Some(Tier::Exact) => self.exact += 1,
-            None => self.undecided += 1,
-        }
-    }
-
-    pub fn joined(self, other: Self) -> Self {
-        Self {
-            double: self.double + other.double,
-            double_double: self.double_double + other.double_double,
-            exact: self.exact + other.exact,
-            undecided: self.undecided + other.undecided,
-            uncertified: self.uncertified + other.uncertified,
-        }
-    }
-
-    pub fn rays(&self) -> u64 {
-        self.double + self.double_double + self.exact + self.undecided + self.uncertified
     }
 }
 
@@ -161,7 +119,7 @@ impl PlacedImplicit {
         &self,
         query: &Query,
         workspace: &mut Workspace,
-        tally: &mut ImplicitTally,
+        tally: &mut Tally,
     ) -> ImplicitAnswer {
         match self.first_crossing(query, workspace, tally) {
             ImplicitAnswer::Found(hit) if hit.tier.is_some() => {
@@ -179,7 +137,7 @@ impl PlacedImplicit {
         &self,
         query: &Query,
         workspace: &mut Workspace,
-        tally: &mut ImplicitTally,
+        tally: &mut Tally,
     ) -> ImplicitAnswer {
         if !query.ray.is_valid() {
             return ImplicitAnswer::Absent;

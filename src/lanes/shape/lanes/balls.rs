@@ -1,11 +1,10 @@
 //! Several balls: one ray asks them together, its lanes balls; or each lane's ray asks those that it
 //! comes near.
 
-use super::{LaneRay, LaneShape, Span};
+use super::{LaneRay, LaneShape, LaneSpan};
 use crate::math::lanes::{Int, Lanes, Mask, Real, Scalar};
 use crate::math::lookup::SMALL;
-use crate::math::vec3::Vec3;
-use crate::shape::sphere::{Asked, Ball, Foot, ball_span};
+use crate::shape::sphere::{Ball, Foot, ball_span};
 
 /// Most balls of a group.
 pub const MOST: usize = SMALL;
@@ -19,14 +18,8 @@ const FOOT_ERROR: f64 = 116.0;
 /// The numbers of up to [`MOST`] balls by column.
 #[derive(Debug, Clone)]
 pub struct Balls<T> {
-    centre: [[T; MOST]; 3],
-    radius: [T; MOST],
-    radius_squared: [T; MOST],
-    offset_error: [T; MOST],
-    curvature: [T; MOST],
-    reach: [T; MOST],
-    clear_squared: [T; MOST],
-    clear: [T; MOST],
+    /// The least reach of all is that of each.
+    columns: Ball<[T; MOST]>,
     /// −[`Ball::clear`].
     behind: [T; MOST],
     centre_squared: [T; MOST],
@@ -50,17 +43,20 @@ impl<T: Scalar> Balls<T> {
         let column = |value: &dyn Fn(&Ball<T>) -> T| -> [T; MOST] {
             std::array::from_fn(|i| value(balls[i.min(last)]))
         };
+        let reach = balls.iter().fold(balls[last].reach, |least, b| {
+            if b.reach < least { b.reach } else { least }
+        });
         Some(Self {
-            centre: [0, 1, 2].map(|axis| column(&|b| b.centre[axis])),
-            radius: column(&|b| b.radius),
-            radius_squared: column(&|b| b.radius_squared),
-            offset_error: column(&|b| b.offset_error),
-            curvature: column(&|b| b.curvature),
-            reach: [balls.iter().fold(balls[last].reach, |least, b| {
-                if b.reach < least { b.reach } else { least }
-            }); MOST],
-            clear_squared: column(&|b| b.clear_squared),
-            clear: column(&|b| b.clear),
+            columns: Ball {
+                centre: [0, 1, 2].map(|axis| column(&|b| b.centre[axis])),
+                radius: column(&|b| b.radius),
+                radius_squared: column(&|b| b.radius_squared),
+                offset_error: column(&|b| b.offset_error),
+                curvature: column(&|b| b.curvature),
+                reach: [reach; MOST],
+                clear_squared: column(&|b| b.clear_squared),
+                clear: column(&|b| b.clear),
+            },
             behind: column(&|b| T::from_f64(-b.clear.to_f64())),
             centre_squared: column(&|b| {
                 T::from_f64(b.centre.iter().map(|x| x.to_f64() * x.to_f64()).sum())
@@ -104,7 +100,8 @@ impl<T: Scalar> Balls<T> {
         let widest = ray.extent + l.splat(self.largest);
         let error = widest * widest * l.real(FOOT_ERROR * <T as Scalar>::ROUNDOFF);
         let outside = origin.length_squared() - error;
-        let [x, y, z] = &self.centre;
+        let columns = &self.columns;
+        let [x, y, z] = &columns.centre;
         let mut near = l.int(0);
         for place in 0..self.count {
             let (x, y, z) = (l.splat(x[place]), l.splat(y[place]), l.splat(z[place]));
@@ -113,13 +110,13 @@ impl<T: Scalar> Balls<T> {
             let squared = outside + l.splat(self.centre_squared[place]);
             let squared = z.mul_add(twice.z, y.mul_add(twice.y, x.mul_add(twice.x, squared)));
             let squared = behind.mul_add(foot_t, squared);
-            let clear = l.splat(self.clear[place]);
-            let apart = squared.gt(l.splat(self.clear_squared[place]))
+            let clear = l.splat(columns.clear[place]);
+            let apart = squared.gt(l.splat(columns.clear_squared[place]))
                 | foot_t.lt(l.splat(self.behind[place]))
                 | foot_t.gt(limit + clear);
             near = l.select_int(apart, near, near | l.int(1 << place));
         }
-        let unusual = ray.extent.gt(l.splat(self.reach[0]));
+        let unusual = ray.extent.gt(l.splat(columns.reach[0]));
         if unusual.any() {
             near = l.select_int(unusual, self.near_from_afar(l, ray, limit), near);
         }
@@ -145,8 +142,9 @@ impl<T: Scalar> Balls<T> {
         l.vectorize(inlined!(|| {
             let mut near = l.int(0);
             for place in 0..self.count {
-                let ball = Same { balls: self, place };
-                let span = Foot::new(ray, ball.centre(l)).span(l, &ball, ray);
+                let value = inlined!(|column: &[T; MOST]| l.splat(column[place]));
+                let ball = &self.columns;
+                let span = Foot::new(ball, value, ray).span(l, ball, value, ray);
                 let behind = span.far.high.lt(l.real(0.0));
                 let apart = span.miss | behind | span.near.low.gt(limit);
                 near = l.select_int(apart, near, near | l.int(1 << place));
@@ -166,9 +164,14 @@ impl<T: Scalar> Balls<T> {
 
     /// Where each lane's ray meets the ball at its place.
     #[inline(always)]
-    pub fn span_of<L: Lanes<Scalar = T>>(&self, l: L, place: L::Int, ray: &LaneRay<L>) -> Span<L> {
-        let ball = Own { balls: self, place };
-        Foot::new(ray, ball.centre(l)).span(l, &ball, ray)
+    pub fn span_of<L: Lanes<Scalar = T>>(
+        &self,
+        l: L,
+        place: L::Int,
+        ray: &LaneRay<L>,
+    ) -> LaneSpan<L> {
+        let value = inlined!(|column: &[T; MOST]| l.lookup(column, place));
+        Foot::new(&self.columns, value, ray).span(l, &self.columns, value, ray)
     }
 
     /// Where the ray, the same in all lanes, meets the balls from place `from` on, one a lane, as
@@ -181,58 +184,8 @@ impl<T: Scalar> Balls<T> {
         ray: &LaneRay<L>,
         asked: L::Mask,
         limit: L::Real,
-    ) -> Span<L> {
-        ball_span(l, &From { balls: self, from }, ray, asked, limit)
+    ) -> LaneSpan<L> {
+        let value = inlined!(|column: &[T; MOST]| l.load(&column[from..]));
+        ball_span(l, &self.columns, value, ray, asked, limit)
     }
 }
-
-/// Lane i asks ball `from` + i.
-struct From<'a, T> {
-    balls: &'a Balls<T>,
-    from: usize,
-}
-
-/// All lanes ask the ball at one place.
-struct Same<'a, T> {
-    balls: &'a Balls<T>,
-    place: usize,
-}
-
-/// Each lane asks the ball at its own place.
-struct Own<'a, L: Lanes> {
-    balls: &'a Balls<L::Scalar>,
-    place: L::Int,
-}
-
-macro_rules! asked {
-    ($kind:ty, |$l:ident, $self:ident, $column:ident| $value:expr) => {
-        impl<L: Lanes> Asked<L> for $kind {
-            #[inline(always)]
-            fn centre(&$self, $l: L) -> Vec3<L::Real> {
-                let [x, y, z] = &$self.balls.centre;
-                let [x, y, z] = [
-                    { let $column = x; $value },
-                    { let $column = y; $value },
-                    { let $column = z; $value },
-                ];
-                Vec3::new(x, y, z)
-            }
-            asked!(@ |$l, $self, $column| $value, radius radius_squared offset_error curvature reach clear_squared clear);
-        }
-    };
-    (@ |$l:ident, $self:ident, $column:ident| $value:expr, $($name:ident)*) => {
-        $(
-            #[inline(always)]
-            fn $name(&$self, $l: L) -> L::Real {
-                let $column = &$self.balls.$name;
-                $value
-            }
-        )*
-    };
-}
-
-asked!(From<'_, L::Scalar>, |l, self, column| l
-    .load(&column[self.from..]));
-asked!(Same<'_, L::Scalar>, |l, self, column| l
-    .splat(column[self.place]));
-asked!(Own<'_, L>, |l, self, column| l.lookup(column, self.place));

@@ -9,25 +9,24 @@ use std::cell::RefCell;
 
 use glam::DVec3;
 
-use crate::field::evaluate::Field;
+use crate::field::evaluate::{Field, Scratch, each};
 use crate::field::normal;
 use crate::math::affine::Affine;
 use crate::math::instructions::Instructions;
 use crate::math::lanes::{Lanes, Mask, Real, Scalar, WIDEST};
 use crate::math::packet::array;
 use crate::math::vec3::{Rows, Vec3};
-use crate::shape::SingularMatrix;
 use crate::shape::hierarchy::{Bounds, OuterBox};
 use crate::shape::implicit::Implicit;
 use crate::shape::implicit::certified::{Packet, WIDTH, Workspace};
-use crate::shape::implicit::placed::{Finder, ImplicitTally};
+use crate::shape::implicit::placed::Finder;
+use crate::shape::{SingularMatrix, Tally};
 
 use super::LaneRay;
-use crate::field::lanes::{LaneField, Scratch, each};
 
 #[derive(Debug, Clone)]
 pub struct LaneImplicit<T> {
-    field: LaneField<T>,
+    field: Field<T>,
     /// The field in f64 and the size of the box, for normals where the gradient vanishes.
     scalar: Field,
     size: f64,
@@ -83,10 +82,9 @@ impl<T: Scalar> LaneImplicit<T> {
         let inside = implicit.inside;
         let centre = (inside[0] + inside[1]) / 2.0;
         let half = (inside[1] - inside[0]) / 2.0;
-        let row_sum = |row: &[f64; 4]| row[0].abs() + row[1].abs() + row[2].abs();
-        let largest_row = inverse.rows.iter().map(row_sum).fold(0.0, f64::max);
+        let largest_row = inverse.abs().vector(DVec3::ONE).max_element();
         Ok(Self {
-            field: LaneField::new(&implicit.field.tape),
+            field: Field::new(&implicit.field.tape),
             scalar: Field::new(&implicit.field.tape),
             size: (inside[1] - inside[0]).max_element(),
             centre: centre.to_array().map(T::from_f64),
@@ -112,7 +110,7 @@ impl<T: Scalar> LaneImplicit<T> {
         &self,
         l: L,
         question: &FieldQuestion<'_, L>,
-        tally: &mut ImplicitTally,
+        tally: &mut Tally,
     ) -> (L::Real, L::Mask) {
         l.vectorize(inlined!(|| {
             let FieldQuestion {
@@ -305,7 +303,7 @@ impl<T: Scalar> PacketRays<T> {
         finder: &Finder,
         [active, leaving]: [u32; 2],
         count: usize,
-        tally: &mut ImplicitTally,
+        tally: &mut Tally,
     ) -> ([T; WIDEST], u32) {
         let mut t = [T::default(); WIDEST];
         let mut found = 0;

@@ -7,13 +7,15 @@
 //! constants). What follows from E and D is bounded shape by shape; a lane that a bound cannot
 //! decide is left to the certified ladder.
 
+use glam::DVec3;
+
 use crate::math::affine::Affine;
 use crate::math::lanes::{Lanes, Real, Scalar};
 use crate::math::vec3::{Rows, Vec3};
 use crate::shape::ShapeKind;
 use crate::shape::flat;
 use crate::shape::sphere::Ball;
-use part::{Part, PartKind};
+use part::Part;
 
 pub mod balls;
 pub mod implicit;
@@ -87,7 +89,7 @@ impl<L: Lanes> Enclosure<L> {
 
 /// Where a line enters and leaves a convex shape, with bounds.
 #[derive(Clone, Copy)]
-pub struct Span<L: Lanes> {
+pub struct LaneSpan<L: Lanes> {
     /// Entry, where the line meets the shape.
     pub near: Enclosure<L>,
     /// Exit; that of flat shapes is the entry.
@@ -100,7 +102,7 @@ pub struct Span<L: Lanes> {
     pub parts: [L::Int; 2],
 }
 
-impl<L: Lanes> Span<L> {
+impl<L: Lanes> LaneSpan<L> {
     /// That of a line which certainly misses.
     #[inline(always)]
     pub fn missed(l: L) -> Self {
@@ -122,16 +124,16 @@ pub struct LaneShape<T> {
     /// World (about the camera) → canonical coordinates.
     pub inverse: Rows<T>,
     pub forward: Rows<T>,
-    /// The planes of each canonical coordinate.
-    planes: [Planes<T>; 3],
+    /// The faces x = ±1 of each canonical coordinate.
+    pub faces: [Part<T>; 3],
     /// 6u Rᵢ.
     pub direction_error: [T; 3],
     /// 6u (|bᵢ| + 1).
     pub offset_error: [T; 3],
     /// Bounds of a flat shape's plane test, see [`flat::margins`].
-    pub(in crate::shape) margins: [T; 2],
+    pub margins: [T; 2],
     /// A sphere that is one in the world too.
-    pub(in crate::shape) ball: Option<Ball<T>>,
+    pub ball: Option<Ball<T>>,
 }
 
 impl<T: Scalar> LaneShape<T> {
@@ -144,10 +146,10 @@ impl<T: Scalar> LaneShape<T> {
             kind,
             inverse: Rows::from_f64(&inverse.rows),
             forward: Rows::from_f64(&forward.rows),
-            planes: inverse.rows.each_ref().map(Planes::new),
-            direction_error: inverse
-                .rows
-                .map(|r| T::from_f64(unit * (r[0].abs() + r[1].abs() + r[2].abs()))),
+            faces: inverse.rows.each_ref().map(Part::faces),
+            direction_error: (unit * inverse.abs().vector(DVec3::ONE))
+                .to_array()
+                .map(T::from_f64),
             offset_error: inverse.rows.map(|r| T::from_f64(unit * (r[3].abs() + 1.0))),
             margins: flat::margins::<T>(inverse).map(T::from_f64),
             ball: Ball::new(forward, reach),
@@ -156,12 +158,7 @@ impl<T: Scalar> LaneShape<T> {
 
     /// Eᵢ for a packet of rays.
     #[inline(always)]
-    pub(in crate::shape) fn origin_error<L: Lanes<Scalar = T>>(
-        &self,
-        l: L,
-        ray: &LaneRay<L>,
-        i: usize,
-    ) -> L::Real {
+    pub fn origin_error<L: Lanes<Scalar = T>>(&self, l: L, ray: &LaneRay<L>, i: usize) -> L::Real {
         ray.extent.mul_add(
             l.splat(self.direction_error[i]),
             l.splat(self.offset_error[i]),
@@ -170,7 +167,7 @@ impl<T: Scalar> LaneShape<T> {
 
     /// The largest Eᵢ and Dᵢ of the first `count` components.
     #[inline(always)]
-    pub(in crate::shape) fn largest_errors<L: Lanes<Scalar = T>>(
+    pub fn largest_errors<L: Lanes<Scalar = T>>(
         &self,
         l: L,
         ray: &LaneRay<L>,
@@ -192,20 +189,6 @@ impl<T: Scalar> LaneShape<T> {
             _ => None,
         }
     }
-
-    /// A part made of the planes of one canonical coordinate.
-    pub fn plane(&self, axis: usize, kind: PartKind) -> Part<T> {
-        let plane = &self.planes[axis];
-        Part {
-            kind,
-            vector: plane.normal,
-            level: plane.middle,
-            half: match kind {
-                PartKind::Faces => plane.half,
-                PartKind::Plane | PartKind::Ball | PartKind::Other => T::default(),
-            },
-        }
-    }
 }
 
 /// A point moved onto a surface, and the unit outward normal there (+z of flat shapes).
@@ -214,26 +197,4 @@ pub struct LaneSurface<L: Lanes> {
     /// The point, scene units about the camera.
     pub point: Vec3<L::Real>,
     pub normal: Vec3<L::Real>,
-}
-
-/// The parallel planes of one canonical coordinate: x = −1, 0, 1 are n · p = middle − half,
-/// middle, middle + half.
-#[derive(Debug, Clone, Copy)]
-pub struct Planes<T> {
-    normal: [T; 3],
-    middle: T,
-    half: T,
-}
-
-impl<T: Scalar> Planes<T> {
-    /// From the row of the inverse that computes the coordinate.
-    fn new(row: &[f64; 4]) -> Self {
-        let [x, y, z, shift] = *row;
-        let length = (x * x + y * y + z * z).sqrt();
-        Self {
-            normal: [x, y, z].map(|c| T::from_f64(c / length)),
-            middle: T::from_f64(-shift / length),
-            half: T::from_f64(1.0 / length),
-        }
-    }
 }

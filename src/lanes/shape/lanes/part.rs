@@ -29,6 +29,18 @@ pub struct Part<T> {
 }
 
 impl<T: Scalar> Part<T> {
+    /// The faces x = ±1 of the canonical coordinate that a row of the inverse computes.
+    pub fn faces(row: &[f64; 4]) -> Self {
+        let [x, y, z, shift] = *row;
+        let length = (x * x + y * y + z * z).sqrt();
+        Self {
+            kind: PartKind::Faces,
+            vector: [x, y, z].map(|c| T::from_f64(c / length)),
+            level: T::from_f64(-shift / length),
+            half: T::from_f64(1.0 / length),
+        }
+    }
+
     pub fn other() -> Self {
         let zero = T::default();
         Self {

@@ -25,7 +25,7 @@ use etalon::inside::math::affine::Affine;
 use etalon::inside::scene::{FinderChoice, Implicit};
 use etalon::inside::shape::Query;
 use etalon::inside::shape::implicit::baseline::SteppingFinder;
-use etalon::inside::shape::implicit::certified::{Certified, Packet, WIDTH, Wish, Workspace};
+use etalon::inside::shape::implicit::certified::{Certified, Effort, Packet, WIDTH, Workspace};
 use etalon::inside::shape::lanes::implicit::LaneImplicit;
 use etalon_doors::shapes::sign_changes;
 use etalon_method::finders::{CLASSES, Oracle};
@@ -120,14 +120,16 @@ fn packets(rays: &[Ray]) -> Vec<Packet> {
 /// Seconds of one pass by the certified finder.
 fn certified(surface: &Surface, packets: &[Packet], exact: bool) -> f64 {
     let mut workspace = Workspace::default();
-    let wish = Wish {
+    let effort = Effort {
         sharp: false,
         exact,
     };
     best(|| {
-        let finder = &surface.certified;
-        let answers = finder.first_hits_of_all(packets, wish, &mut workspace);
-        answers.iter().map(|a| a.found).fold(0, u32::wrapping_add)
+        let mut found = |packet| {
+            let answers = surface.certified.first_hits(packet, effort, &mut workspace);
+            answers.found
+        };
+        packets.iter().map(&mut found).fold(0, u32::wrapping_add)
     })
 }
 
@@ -229,13 +231,13 @@ fn view(name: &str, size: usize, distance: f64, file: &str) {
     let packets = packets(&rays);
     let seconds = certified(&surface, &packets, true);
     let mut workspace = Workspace::default();
-    let wish = Wish {
+    let effort = Effort {
         sharp: true,
         exact: true,
     };
     let mut bytes = Vec::new();
     for packet in &packets {
-        let answers = surface.certified.first_hits(packet, wish, &mut workspace);
+        let answers = surface.certified.first_hits(packet, effort, &mut workspace);
         for lane in (0..WIDTH).filter(|lane| packet.active >> lane & 1 == 1) {
             let hit = answers.found >> lane & 1 == 1;
             let t = if hit { answers.t[lane] } else { f64::INFINITY };

@@ -26,7 +26,7 @@ use etalon::inside::math::affine::Affine;
 use etalon::inside::math::lanes::Scalar;
 use etalon::inside::scene::FinderChoice;
 use etalon::inside::shape::implicit::certified::Workspace;
-use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
+use etalon::inside::shape::implicit::placed::{ImplicitAnswer, PlacedImplicit};
 use etalon::inside::shape::{Placed, Query, Ray, ShapeKind, Start, Tally};
 use families::{Body, Case, FAMILIES, Family, Problem};
 use textbook::Textbook;
@@ -412,7 +412,7 @@ impl Asked {
                     t_min: 0.0,
                     t_max: f64::INFINITY,
                 };
-                match placed.first_crossing(&query, workspace, &mut ImplicitTally::default()) {
+                match placed.first_crossing(&query, workspace, &mut Tally::default()) {
                     ImplicitAnswer::Found(hit) => Said::Hit { t: hit.t, body: 0 },
                     ImplicitAnswer::Absent => Said::Miss,
                     ImplicitAnswer::Undecided => Said::Undecided,

@@ -11,8 +11,8 @@ use std::time::Instant;
 use etalon::inside::math::affine::Affine;
 use etalon::inside::scene::{FinderChoice, Implicit};
 use etalon::inside::shape::implicit::certified::Workspace;
-use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitTally, PlacedImplicit};
-use etalon::inside::shape::{Query, Ray};
+use etalon::inside::shape::implicit::placed::{ImplicitAnswer, PlacedImplicit};
+use etalon::inside::shape::{Query, Ray, Tally};
 
 use march::March;
 pub use oracle::{Oracle, OracleError, OracleRay, OracleShape};
@@ -156,7 +156,7 @@ impl Ready {
                     t_min,
                     t_max: f64::INFINITY,
                 };
-                match placed.first_crossing(&query, workspace, &mut ImplicitTally::default()) {
+                match placed.first_crossing(&query, workspace, &mut Tally::default()) {
                     ImplicitAnswer::Found(hit) => Answer::Hit(hit.t),
                     ImplicitAnswer::Absent => Answer::Miss,
                     ImplicitAnswer::Undecided => Answer::Undecided,

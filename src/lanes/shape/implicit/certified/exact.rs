@@ -16,8 +16,8 @@ use crate::shape::ladder::ScaledRay;
 
 /// A ray in integers: local point = (origin + t direction) / scale.
 struct IntegerRay {
-    origin: [BigInt; 3],
-    direction: [BigInt; 3],
+    /// Origin and direction by coordinate.
+    coordinates: [[BigInt; 2]; 3],
     scale: BigInt,
 }
 
@@ -48,8 +48,7 @@ impl IntegerRay {
             }
         };
         Self {
-            origin: line.origin.each_ref().map(integer),
-            direction: line.direction.each_ref().map(integer),
+            coordinates: [0, 1, 2].map(|i| [&line.origin[i], &line.direction[i]].map(integer)),
             scale: integer(&line.scale),
         }
     }
@@ -68,9 +67,9 @@ impl IntegerRay {
             stretch.high = Point::of(t_max);
         }
         for axis in 0..3 {
-            let (o, d) = (&self.origin[axis], &self.direction[axis]);
+            let [o, d] = &self.coordinates[axis];
             // Lower face ≤ (o + t d) / scale ≤ upper face.
-            let room = [placed.clip.lower[axis], placed.clip.upper[axis]].map(|face| {
+            let room = [placed.clip[0][axis], placed.clip[1][axis]].map(|face| {
                 let face = Point::of(face);
                 (
                     &face.numerator * &self.scale - o * &face.denominator,
@@ -117,12 +116,13 @@ pub(super) fn first_hit(
     let unit = power_of_two(scaled.exponent());
     let line = IntegerRay::new(placed, &scaled);
     let stretch = line.stretch(placed, limits.map(|t| t * unit))?;
-    let coordinates = [0, 1, 2].map(|i| [line.origin[i].clone(), line.direction[i].clone()]);
     let hint = Some(hint * unit).filter(|x| x.is_finite());
     let mut first: Option<ExactRoot> = None;
     for factor in &placed.factors {
         let degree = factor.program.result().degree;
-        let mut coefficients = factor.program.powers(&coordinates, &line.scale, degree)?;
+        let mut coefficients = factor
+            .program
+            .powers(&line.coordinates, &line.scale, degree)?;
         if let ExactStart::OnSurface(roundoff) = start
             && is_start(&coefficients, roundoff)
         {
@@ -159,11 +159,12 @@ pub(super) fn hit_points(
     let scaled = ScaledRay::new(ray);
     let unit = power_of_two(scaled.exponent());
     let line = IntegerRay::new(placed, &scaled);
-    let coordinates = [0, 1, 2].map(|i| [line.origin[i].clone(), line.direction[i].clone()]);
     let mut first: Option<([Exact; 2], u32)> = None;
     for factor in &placed.factors {
         let degree = factor.program.result().degree;
-        let coefficients = factor.program.powers(&coordinates, &line.scale, degree)?;
+        let coefficients = factor
+            .program
+            .powers(&line.coordinates, &line.scale, degree)?;
         let Some(ends) = sharpened(&coefficients, enclosure.map(|t| t * unit), bits) else {
             continue;
         };
@@ -198,21 +199,21 @@ pub(super) fn order_of_vanishing(
     let at = Point::of(t * power_of_two(scaled.exponent()));
     // (o + (t + τ) d) / s = (o q + p d + τ' d) / (s q) for t = p / q and τ' = q τ.
     let (p, q) = (&at.numerator, &at.denominator);
-    let mut points = [0, 1, 2].map(|i| &line.origin[i] * q + &line.direction[i] * p);
-    let mut scale = [&line.scale * q];
-    let mut directions = line.direction;
+    let mut coordinates = line.coordinates;
+    for [o, d] in &mut coordinates {
+        *o = &*o * q + &*d * p;
+    }
+    let mut scale = &line.scale * q;
     // Powers of two that are common are of no concern.
-    let shift = trailing(points.iter().chain(&scale));
-    points
-        .iter_mut()
-        .chain(&mut scale)
-        .for_each(|x| *x >>= shift);
-    let shift = trailing(directions.iter());
-    directions.iter_mut().for_each(|x| *x >>= shift);
+    let shift = trailing(coordinates.iter().map(|[o, _]| o).chain([&scale]));
+    scale >>= shift;
+    let shift_directions = trailing(coordinates.iter().map(|[_, d]| d));
+    for [o, d] in &mut coordinates {
+        *o >>= shift;
+        *d >>= shift_directions;
+    }
     let degree = program.result().degree;
-    let coordinates: [[BigInt; 2]; 3] =
-        [0, 1, 2].map(|i| [points[i].clone(), directions[i].clone()]);
-    let small = small(&coordinates, &scale[0]);
+    let small = small(&coordinates, &scale);
     // Mostly the first two powers decide, and machine integers hold them.
     for highest in [1, 2, 4, degree] {
         let highest = highest.min(degree);
@@ -224,7 +225,7 @@ pub(super) fn order_of_vanishing(
             )?))
         });
         let order = quick.unwrap_or_else(|| {
-            let powers = program.powers(&coordinates, &scale[0], highest);
+            let powers = program.powers(&coordinates, &scale, highest);
             powers.map_or(Some(0), |powers| first_other_than_zero(&powers))
         });
         if let Some(order) = order {

@@ -107,8 +107,7 @@ impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
         let tiny = l.real(f64::MIN_POSITIVE * 1e16);
         let o = self.origin.map(inlined!(|x: W| x.head()));
         let d = self.direction.map(inlined!(|x: W| x.head()));
-        let faces = placed.outer.lower.iter().chain(&placed.outer.upper);
-        let face = l.real(faces.fold(0.0, |a: f64, b| a.max(b.abs())));
+        let face = l.real(placed.farthest);
         let reach = o[0].abs().max(o[1].abs()).max(o[2].abs()) + face;
         let fastest = d[0].abs().max(d[1].abs()).max(d[2].abs());
         // No point of the box is farther along the line; twice as much pays for the margin.
@@ -124,8 +123,8 @@ impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
         let mut meets = l.mask(true);
         let (mut near, mut far) = (l.load(&packet.t_min[at..]), l.load(&packet.t_max[at..]));
         for i in 0..3 {
-            let lower = l.real(placed.outer.lower[i]) - slack;
-            let upper = l.real(placed.outer.upper[i]) + slack;
+            let lower = l.real(placed.outer[0][i]) - slack;
+            let upper = l.real(placed.outer[1][i]) + slack;
             let inverse = l.real(1.0) / d[i];
             let (t1, t2) = ((lower - o[i]) * inverse, (upper - o[i]) * inverse);
             let along = d[i].same(zero);
@@ -421,14 +420,15 @@ impl<L: DoubleLanes> Combined<L> {
         let low = self.low.max(clipped.near);
         let high = self.high.min(clipped.far);
         let mut sure = self.found & !self.undecided;
-        if let Some(cut) = &placed.cut {
+        if placed.is_cut {
             // The margin is wider than what rounding does to these points.
             for i in 0..3 {
                 let (o, d) = (local.origin[i].head(), local.direction[i].head());
                 let (a, b) = (d.mul_add(low, o), d.mul_add(high, o));
                 let slack = clipped.shift + l.real(placed.margin / 1024.0);
                 let (least, most) = (a.min(b) - slack, a.max(b) + slack);
-                sure = sure & least.gt(l.real(cut.lower[i])) & most.lt(l.real(cut.upper[i]));
+                sure =
+                    sure & least.gt(l.real(placed.cut[0][i])) & most.lt(l.real(placed.cut[1][i]));
             }
         }
         let absent = self.absent | (self.open & !self.found & !self.undecided);

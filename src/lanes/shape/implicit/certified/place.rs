@@ -21,14 +21,8 @@ const PAIR: Rounding = Rounding {
     parts: 2,
 };
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
-    pub lower: [f64; 3],
-    pub upper: [f64; 3],
-}
-
 #[derive(Debug, Clone)]
-pub(super) struct FactorField {
+pub struct FactorField {
     pub program: Program,
     pub power: u32,
     /// 1 / C(n, i), each as a sum of two f64.
@@ -57,15 +51,19 @@ pub(super) struct Inverse {
 
 #[derive(Debug, Clone)]
 pub struct Certified {
-    pub(super) factors: Vec<FactorField>,
+    pub factors: Vec<FactorField>,
     pub(super) inverse: [Inverse; 2],
     pub(super) ladder: Ladder,
     /// Where hits count, object coordinates.
-    pub(super) clip: Limits,
+    pub(super) clip: [[f64; 3]; 2],
     /// Within it, where the surface is.
-    pub(super) outer: Limits,
+    pub(super) outer: [[f64; 3]; 2],
+    /// Largest magnitude of a coordinate there.
+    pub(super) farthest: f64,
     /// Faces beyond which a root would not count; infinite where the surface does not reach them.
-    pub(super) cut: Option<Limits>,
+    pub(super) cut: [[f64; 3]; 2],
+    /// Whether there are such faces.
+    pub(super) is_cut: bool,
     /// Bound of the local ends' coordinates beyond the outer box.
     pub(super) margin: f64,
 }
@@ -98,59 +96,31 @@ impl Certified {
         } else {
             Vec::new()
         };
-        Self::place(programs, clip, whole.unwrap_or(clip), to_world).map(Some)
-    }
-
-    fn place(
-        factors: Vec<(Program, u32)>,
-        clip: [DVec3; 2],
-        outer: [DVec3; 2],
-        to_world: &Affine,
-    ) -> Result<Self, SingularMatrix> {
-        let limits = |[lower, upper]: [DVec3; 2]| Limits {
-            lower: lower.to_array(),
-            upper: upper.to_array(),
-        };
-        let (clip, outer) = (limits(clip), limits(outer));
-        let half = (0..3).map(|i| (outer.upper[i] - outer.lower[i]) / 2.0);
-        let margin = MARGIN * half.fold(0.0, f64::max);
-        let kept = |face: f64, at: f64, free: f64| {
-            let is_free = (at - face).abs() > margin;
-            if is_free { free } else { face }
-        };
-        let (low, high) = (f64::NEG_INFINITY, f64::INFINITY);
-        let cut = Limits {
-            lower: [0, 1, 2].map(|i| kept(clip.lower[i], outer.lower[i], low)),
-            upper: [0, 1, 2].map(|i| kept(clip.upper[i], outer.upper[i], high)),
-        };
-        let is_cut = cut.lower.iter().chain(&cut.upper).any(|x| x.is_finite());
-        let reach = [0, 1, 2].map(|i| outer.lower[i].abs().max(outer.upper[i].abs()) + margin);
+        let outer = whole.unwrap_or(clip);
+        let margin = MARGIN * ((outer[1] - outer[0]) / 2.0).max_element().max(0.0);
+        let farthest = outer[0].abs().max(outer[1].abs());
+        let reach = (farthest + margin).to_array();
+        let cut = [(0, f64::NEG_INFINITY), (1, f64::INFINITY)].map(|(i, free)| {
+            let is_free = (outer[i] - clip[i]).abs().cmpgt(DVec3::splat(margin));
+            DVec3::select(is_free, DVec3::splat(free), clip[i])
+        });
+        let is_cut = cut.iter().any(|corner| corner.is_finite_mask().any());
         let ladder = Ladder::new(to_world)?;
-        let factors = factors
+        let factors = programs
             .into_iter()
             .map(|(program, power)| FactorField::new(program, power, reach))
             .collect();
-        Ok(Self {
+        Ok(Some(Self {
             factors,
             inverse: [Inverse::plain(&ladder), Inverse::pair(&ladder)],
             ladder,
-            clip,
-            outer,
-            cut: is_cut.then_some(cut),
+            clip: clip.map(|corner| corner.to_array()),
+            outer: outer.map(|corner| corner.to_array()),
+            farthest: farthest.max_element(),
+            cut: cut.map(|corner| corner.to_array()),
+            is_cut,
             margin,
-        })
-    }
-
-    /// The same with the bounds of rounding errors left out: to show that they are needed.
-    #[must_use]
-    pub fn without_bounds(mut self) -> Self {
-        for factor in &mut self.factors {
-            factor.accounted = 0.0;
-            for bounds in &mut factor.bounds {
-                (bounds.error, bounds.change) = (0.0, 0.0);
-            }
-        }
-        self
+        }))
     }
 
     /// Largest number of coefficients of a factor's forms.

@@ -1,4 +1,5 @@
-//! Which wavelengths a path carries: densities on 360–830 nm with their inverses.
+//! Densities of wavelengths on 360–830 nm with their inverses: that of the renderer, and others to
+//! compare it with.
 //!
 //! A hero set of C wavelengths comes from one random number u: wavelength j uses frac(u + j/C)
 //! (Wilkie et al. 2014, Hero Wavelength Spectral Sampling). Every wavelength of the set then has
@@ -6,8 +7,9 @@
 
 use std::sync::LazyLock;
 
-use super::observer::xyz_bar;
-use super::{NM_MAX, NM_MIN, quadrature};
+use etalon::inside::spectrum::grid::visible_wavelength;
+use etalon::inside::spectrum::observer::{Y_INTEGRAL, spectrum_to_xyz, xyz_bar};
+use etalon::inside::spectrum::{NM_MAX, NM_MIN, Spectrum};
 
 /// A density of wavelengths on 360–830 nm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,10 +27,6 @@ pub enum WavelengthPdf {
 const STEEPNESS: f64 = 0.0072;
 /// Wavelength of the density's peak, nm.
 const PEAK: f64 = 538.0;
-/// tanh(a (538 − 360)).
-const TANH_LOW: f64 = 0.856_910_625_469_828;
-/// tanh(a (830 − 538)) + tanh(a (538 − 360)).
-const TANH_SPAN: f64 = 1.827_501_972_410_097_8;
 /// Added to x̄ + ȳ + z̄, whose largest value is about 2, so that no wavelength is rare by more than
 /// a factor of 100.
 const OBSERVER_FLOOR: f64 = 0.02;
@@ -37,7 +35,7 @@ impl WavelengthPdf {
     /// The wavelength in nm at `u` in 0…1: the inverse of the cumulative distribution.
     pub fn sample(self, u: f64) -> f64 {
         let nm = match self {
-            Self::Visible => PEAK - libm::atanh(TANH_LOW - u * TANH_SPAN) / STEEPNESS,
+            Self::Visible => visible_wavelength(u),
             Self::Observer => ObserverDensity::get().sample(u),
             Self::Uniform => NM_MIN + u * (NM_MAX - NM_MIN),
         };
@@ -51,8 +49,10 @@ impl WavelengthPdf {
         }
         match self {
             Self::Visible => {
+                let span = libm::tanh(STEEPNESS * (NM_MAX - PEAK))
+                    + libm::tanh(STEEPNESS * (PEAK - NM_MIN));
                 let cosh = libm::cosh(STEEPNESS * (nm - PEAK));
-                STEEPNESS / (TANH_SPAN * cosh * cosh)
+                STEEPNESS / (span * cosh * cosh)
             }
             Self::Observer => ObserverDensity::get().pdf(nm),
             Self::Uniform => 1.0 / (NM_MAX - NM_MIN),
@@ -130,7 +130,7 @@ impl ObserverDensity {
 pub fn hero_relative_variance(pdf: WavelengthPdf, count: usize) -> [f64; 3] {
     let steps = (1 << 18) / count;
     assert!(steps > 0, "a set of {count} wavelengths is too large");
-    let integral = observer_integral();
+    let integral = spectrum_to_xyz(&Spectrum::Constant(1.0)).map(|x| x * Y_INTEGRAL);
     let mut sum = [0.0; 3];
     for step in 0..steps {
         let u = (step as f64 + 0.5) / (steps * count) as f64;
@@ -148,18 +148,4 @@ pub fn hero_relative_variance(pdf: WavelengthPdf, count: usize) -> [f64; 3] {
         }
     }
     sum.map(|total| total / steps as f64)
-}
-
-fn observer_integral() -> [f64; 3] {
-    let mut sum = [0.0; 3];
-    for nm in NM_MIN as u32..NM_MAX as u32 {
-        let low = f64::from(nm);
-        for (total, part) in sum
-            .iter_mut()
-            .zip(quadrature::gauss(low, low + 1.0, xyz_bar))
-        {
-            *total += part;
-        }
-    }
-    sum
 }

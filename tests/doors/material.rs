@@ -2,17 +2,17 @@
 
 use glam::DVec3;
 
-use crate::integrate::direct::Sampled;
-use crate::light::Towards;
-use crate::material::diffuse::Diffuse;
-use crate::material::phong::Phong;
-use crate::material::{
-    Densities, Event, Interface, Material, MaterialKind, Medium, Transport, Variates, Wavelengths,
-    with_material,
+use etalon_lanes::integrate::direct;
+use etalon_lanes::light::Towards;
+use etalon_lanes::material::diffuse::Diffuse;
+use etalon_lanes::material::phong::Phong;
+use etalon_lanes::material::{
+    Densities, Event, Interface, Material, MaterialJob, MaterialKind, Medium, Transport, Variates,
+    Wavelengths,
 };
-use crate::math::instructions::Precision;
-use crate::math::lanes::{Lanes, Mask, Scalar, WIDEST};
-use crate::math::vec3::Vec3;
+use etalon_lanes::math::instructions::Precision;
+use etalon_lanes::math::lanes::{Lanes, Mask, Scalar, WIDEST};
+use etalon_lanes::math::vec3::Vec3;
 
 /// Wavelengths.
 pub const C: usize = 4;
@@ -49,12 +49,14 @@ pub struct Setting {
     pub disperses: bool,
     /// All wavelengths but the hero have ended.
     pub ended: bool,
+    /// Number of the hero among the wavelengths.
     pub hero: usize,
 }
 
 /// [`Event`] of one lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
+    /// wi: unit direction in which the path goes on.
     pub direction: DVec3,
     /// Forward density, or probability of a delta event.
     pub pdf: f64,
@@ -116,7 +118,6 @@ impl Setting {
                 fraction: &[T::from_f64(0.25)],
                 ended: l.mask(self.ended),
             },
-            #[cfg(feature = "planted")]
             planted: None,
         };
         ask(l, &interface)
@@ -177,32 +178,50 @@ fn sample<T: Scalar>(event: &Event<T::One>, weight: [f64; C]) -> Sample {
     }
 }
 
-/// Calls a method of a setting for a subject, in its precision.
-macro_rules! asked {
-    ($subject:expr, $setting:expr, $method:ident, $argument:expr) => {
-        match $subject {
-            Subject::Listed(kind) => {
-                with_material!(kind, M => asked!(@ M, $setting, $method, $argument))
-            }
-            Subject::Phong => asked!(@ Phong, $setting, $method, $argument),
+struct Sampled<'a>(&'a Setting, &'a [[f64; 3]]);
+
+impl MaterialJob for Sampled<'_> {
+    type Output = Vec<Sample>;
+
+    fn run<M: Material>(self) -> Vec<Sample> {
+        let Self(setting, u) = self;
+        match setting.precision {
+            Precision::Single => setting.sampled::<f32, M>(u),
+            Precision::Double => setting.sampled::<f64, M>(u),
         }
-    };
-    (@ $material:ty, $setting:expr, $method:ident, $argument:expr) => {
-        match $setting.precision {
-            Precision::Single => $setting.$method::<f32, $material>($argument),
-            Precision::Double => $setting.$method::<f64, $material>($argument),
+    }
+}
+
+struct Evaluated<'a>(&'a Setting, &'a [DVec3]);
+
+impl MaterialJob for Evaluated<'_> {
+    type Output = Vec<Evaluation>;
+
+    fn run<M: Material>(self) -> Vec<Evaluation> {
+        let Self(setting, wi) = self;
+        match setting.precision {
+            Precision::Single => setting.evaluated::<f32, M>(wi),
+            Precision::Double => setting.evaluated::<f64, M>(wi),
         }
-    };
+    }
+}
+
+/// Does something for the material of a subject that scatters.
+fn run<J: MaterialJob>(subject: Subject, job: J) -> J::Output {
+    match subject {
+        Subject::Listed(kind) => kind.texture_of().unwrap_or(kind).run(job),
+        Subject::Phong => job.run::<Phong>(),
+    }
 }
 
 /// [`Material::sample`] for each triple of random numbers: choice, and two for the direction.
 pub fn sample_each(subject: Subject, setting: &Setting, u: &[[f64; 3]]) -> Vec<Sample> {
-    asked!(subject, setting, sampled, u)
+    run(subject, Sampled(setting, u))
 }
 
 /// [`Material::evaluate`] for each direction wi.
 pub fn evaluate_each(subject: Subject, setting: &Setting, wi: &[DVec3]) -> Vec<Evaluation> {
-    asked!(subject, setting, evaluated, wi)
+    run(subject, Evaluated(setting, wi))
 }
 
 /// What light from wi is multiplied with on a [`Diffuse`] surface, cosine and all: as the loop has it,
@@ -228,7 +247,7 @@ fn both_ways<T: Scalar>(
 ) -> [[f64; C]; 2] {
     let l = T::ONE;
     let direction = Vec3::splat(l, wi);
-    let light = Sampled::<T::One> {
+    let light = direct::Sampled::<T::One> {
         towards: Towards {
             direction,
             distance: l.real(1.0),
