@@ -130,7 +130,8 @@ fn most_open(questions: usize) -> usize {
 
 fn case(name: &str, path: &Path) -> (Case, Side) {
     let reference = Side::read(path).unwrap();
-    let case = Case::of_reference(name, &reference, root()).unwrap_or_else(|e| panic!("{e}"));
+    let case =
+        Case::of_reference(name, &reference, root()).unwrap_or_else(|e| panic!("{name}: {e}"));
     (case, reference)
 }
 

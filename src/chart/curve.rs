@@ -44,17 +44,14 @@ impl Point {
     /// Whether the reference's own error is the larger part of what was measured: below this
     /// floor a curve is not drawn through, as most of it has been subtracted.
     pub fn at_floor(&self) -> bool {
-        let square = |row: &Row| row.reference_rmse * row.reference_rmse;
-        let floor = self.mean(square).value;
+        let floor = self.mean(|row| row.reference_rmse.powi(2)).value;
         let relative = self.mean(|row| row.reference_relmse).value;
         self.mean(Row::mse).value <= floor || self.mean(|row| row.relmse).value <= relative
     }
 
     /// Mean estimated over mean actual squared error, its root.
     pub fn estimated_over_actual(&self) -> f64 {
-        let estimated = self
-            .mean(|row| row.estimated_rmse * row.estimated_rmse)
-            .value;
+        let estimated = self.mean(|row| row.estimated_rmse.powi(2)).value;
         (estimated / self.mean(Row::mse).value).sqrt()
     }
 }

@@ -20,18 +20,15 @@ pub enum Key {
 }
 
 impl Key {
-    pub const ALL: [Self; 7] = {
-        use Key::{Finder, MaxDepth, Precision, Sampler, Scrambles, Spp, Wavelengths};
-        [
-            Spp,
-            Sampler,
-            Precision,
-            Wavelengths,
-            MaxDepth,
-            Finder,
-            Scrambles,
-        ]
-    };
+    pub const ALL: [Self; 7] = [
+        Self::Spp,
+        Self::Sampler,
+        Self::Precision,
+        Self::Wavelengths,
+        Self::MaxDepth,
+        Self::Finder,
+        Self::Scrambles,
+    ];
 
     /// Its name on the command line and its column in a table.
     pub fn column(self) -> &'static str {

@@ -21,8 +21,8 @@ pub const SMAPE_EPSILON: f64 = 1e-2;
 
 /// A metric's value with the standard error that the spread of its terms over the pixels gives.
 ///
-/// Noise is independent from pixel to pixel, so the spread holds the noise of each term and, beside
-/// it, how much the terms' expectations differ from pixel to pixel: the standard error is never too
+/// Noise is independent from pixel to pixel, so the spread holds the noise of each term and also
+/// how much the terms' expectations differ from pixel to pixel: the standard error is never too
 /// small on average, and too large where the error has a structure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -37,14 +37,10 @@ impl Metric {
     /// The mean of values, one a pixel.
     #[must_use]
     pub fn mean(values: &[f64]) -> Self {
-        let Estimate {
-            value,
-            standard_error,
-            ..
-        } = Estimate::mean(values);
+        let mean = Estimate::mean(values);
         Self {
-            value,
-            standard_error,
+            value: mean.value,
+            standard_error: mean.standard_error,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-use super::student;
+use super::{Estimate, student};
 
 /// The line ln y = intercept + slope · ln x.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,7 +33,7 @@ pub struct Replicates {
     pub values: Vec<f64>,
 }
 
-/// ln of the mean and its variance.
+/// ln of a mean and its variance, over ln x.
 struct Logarithm {
     x: f64,
     y: f64,
@@ -60,29 +60,19 @@ impl Slope {
             return None;
         }
         let line = Line::through(&points);
-        let parts = || {
-            points
-                .iter()
-                .zip(&line.shares)
-                .map(|(p, c)| c * c * p.variance)
-        };
-        let variance: f64 = parts().sum();
-        let squares: f64 = points
-            .iter()
-            .zip(parts())
-            .map(|(p, v)| v * v / p.freedom)
-            .sum();
+        let (mut variance, mut squares, mut excess) = (0.0, 0.0, 0.0);
+        for (p, share) in points.iter().zip(&line.shares) {
+            let part = share * share * p.variance;
+            variance += part;
+            squares += part * part / p.freedom;
+            let miss = p.y - line.intercept - line.slope * p.x;
+            excess += miss * miss / p.variance;
+        }
         let own_freedom = variance * variance / squares;
         let beyond = points.len() as f64 - 2.0;
-        let misses = |p: &Logarithm| {
-            let miss = p.y - line.intercept - line.slope * p.x;
-            miss * miss / p.variance
-        };
-        let excess = points.iter().map(misses).sum::<f64>() / beyond;
-        let of_one = points
-            .iter()
-            .map(|p| p.freedom)
-            .fold(f64::INFINITY, f64::min);
+        excess /= beyond;
+        let freedoms = points.iter().map(|p| p.freedom);
+        let of_one = freedoms.fold(f64::INFINITY, f64::min);
         let straight = beyond < 1.0 || excess <= tolerated(beyond, of_one);
         let (scale, freedom) = if straight {
             (1.0, own_freedom)
@@ -145,11 +135,8 @@ impl Line {
         let squares = sum(&|p| (p.x - mean_x) * (p.x - mean_x));
         let share = |(p, w): (&Logarithm, &f64)| w * (p.x - mean_x) / squares;
         let shares: Vec<f64> = points.iter().zip(&weights).map(share).collect();
-        let slope = points
-            .iter()
-            .zip(&shares)
-            .map(|(p, c)| c * p.y)
-            .sum::<f64>();
+        let parts = points.iter().zip(&shares).map(|(p, c)| c * p.y);
+        let slope = parts.sum::<f64>();
         Self {
             slope,
             intercept: mean_y - slope * mean_x,
@@ -160,17 +147,15 @@ impl Line {
 
 impl Logarithm {
     fn of(point: &Replicates) -> Option<Self> {
-        let count = point.values.len() as f64;
-        let mean = point.values.iter().sum::<f64>() / count;
-        let squares: f64 = point.values.iter().map(|v| (v - mean) * (v - mean)).sum();
-        let variance = squares / (count - 1.0) / count / (mean * mean);
-        let usable = mean > 0.0 && variance > 0.0 && variance.is_finite();
+        let mean = Estimate::mean(&point.values);
+        let variance = (mean.standard_error / mean.value).powi(2);
+        let usable = mean.value > 0.0 && variance > 0.0 && variance.is_finite();
         usable.then(|| Self {
             x: libm::log(point.x),
             // The mean of a logarithm is less than the logarithm of the mean by half the variance.
-            y: libm::log(mean) + variance / 2.0,
+            y: libm::log(mean.value) + variance / 2.0,
             variance,
-            freedom: count - 1.0,
+            freedom: mean.freedom,
         })
     }
 }

@@ -1,5 +1,5 @@
 //! Whether numbers look drawn from the uniform distribution on [0, 1], as the values of the
-//! cumulative distribution at honest z-scores do.
+//! cumulative distribution at z-scores with correct standard errors are.
 
 /// p-value of the test of T. W. Anderson and D. A. Darling (JASA 49, 1954) that independent
 /// numbers are uniform on [0, 1]; 1 without numbers. It gives more weight to both ends than the

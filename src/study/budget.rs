@@ -11,7 +11,7 @@ use crate::film::pixels::{Estimate, Pixels};
 use crate::render::Unwatched;
 use crate::render::seeds::seed;
 
-/// What a render costs.
+/// Seconds of a render, measured by a pilot.
 #[derive(Debug, Clone, Copy)]
 pub struct Cost {
     /// Seconds for one sample in each pixel.
@@ -20,10 +20,10 @@ pub struct Cost {
     render: f64,
 }
 
-/// What renders cost that differ in more than their samples.
+/// Costs of renders that differ in more than their samples.
 #[derive(Debug, Clone)]
 pub struct Costs {
-    /// Of each curve over samples, or else of each point.
+    /// One a curve where the abscissa is the number of samples, otherwise one a point.
     pub points: Vec<Cost>,
     /// Of the study's own reference, if it needs one.
     pub reference: Option<Cost>,
@@ -31,16 +31,15 @@ pub struct Costs {
     pub replicates: u32,
 }
 
-/// What of a study would fit.
+/// The part of a study that would fit into the budget.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fits {
-    /// An axis of samples a pixel that ends here.
+    /// Samples a pixel up to this number.
     AxisTo(u32),
-    /// So many samples a pixel at every point.
+    /// This number of samples a pixel at every point.
     Samples(u32),
-    /// No number of samples.
     NoSamples,
-    /// Not even an axis of samples a pixel that ends here.
+    /// Not even samples a pixel from 1 to this number.
     NoAxisTo(u32),
 }
 
@@ -55,7 +54,7 @@ impl std::fmt::Display for Fits {
     }
 }
 
-/// Why a study is not begun.
+/// A study that does not fit into the time or the memory there is.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BudgetError {
     #[error(
@@ -64,7 +63,7 @@ pub enum BudgetError {
     Seconds {
         needed: f64,
         budget: f64,
-        /// A budget that would do, seconds.
+        /// The least budget that suffices, seconds.
         enough: f64,
         fits: Fits,
     },
@@ -73,20 +72,18 @@ pub enum BudgetError {
         needed >> 20, available >> 20, size[0], size[1]
     )]
     Memory {
-        /// Estimated bytes.
         needed: u64,
-        /// Bytes there are.
         available: u64,
         /// The largest picture of the same shape that would fit.
         size: [u64; 2],
     },
 }
 
-/// Share of the budget that is planned for: clocks vary, and charts and report come after.
+/// Share of the budget that is planned for: speed varies, and charts and report come after.
 const PLANNED: f64 = 0.85;
 /// Largest power of two that a planned axis of samples ends at.
 const LONGEST_AXIS: u32 = 14;
-/// The smallest: fewer than four points are no curve.
+/// Smallest power of two that it ends at: fewer than four points are no curve.
 const SHORTEST_AXIS: u32 = 3;
 
 impl Cost {
@@ -111,7 +108,6 @@ impl Cost {
         }
     }
 
-    /// Seconds of a render.
     pub fn seconds(self, samples: u32) -> f64 {
         self.render + self.sample * f64::from(samples)
     }
@@ -196,8 +192,8 @@ impl Costs {
 pub fn check_memory(largest: &Ready, available: u64) -> Result<(), BudgetError> {
     let image = &largest.scene.image;
     let sums = Pixels::bytes_per_pixel(largest.plan.choices.replicates, image.spp);
-    // Of the render the sums, the estimates and their planes; of the reference and of its own
-    // making, values and variances; of pictures kept for the report, three colours.
+    // The render: sums, estimates and their planes; the reference and the sums it is made from:
+    // values and variances; the picture kept for the report: three colours.
     let numbers = 3 + 2 * 6 + 3;
     let pixel = (sums + size_of::<Estimate>() + numbers * size_of::<f64>()) as u64;
     let [width, height] = image.size.map(u64::from);

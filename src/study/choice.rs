@@ -10,13 +10,12 @@ use super::subject::{Ready, Subject};
 use crate::scene::{SamplerKind, Scene};
 use crate::spectrum::Spectrum;
 
-/// What is asked for.
+/// The reference that is asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Choice {
-    /// A committed reference, the scene's known answer, or the study's own, whichever there is
-    /// first.
+    /// The first there is of a committed reference, the scene's known answer, and the study's own.
     Auto,
-    /// This picture.
+    /// A picture with its variance.
     File(PathBuf),
     /// This radiance, the same at all wavelengths and in all pixels, W·m⁻²·sr⁻¹·nm⁻¹.
     Radiance(f64),
@@ -41,23 +40,14 @@ impl FromStr for Choice {
     }
 }
 
-/// What was found.
 #[derive(Debug)]
 pub struct Found {
     /// The reference; `None` is the study's own, which is still to be rendered.
     pub reference: Option<Reference>,
     /// Where it comes from, in words.
     pub about: String,
-    /// What there is to be told about the search.
+    /// Why committed references were passed over.
     pub notes: Vec<String>,
-}
-
-impl Found {
-    /// What names it.
-    pub fn name(&self) -> String {
-        let name = self.reference.as_ref().map(|r| r.name.clone());
-        name.unwrap_or_else(|| "own".to_owned())
-    }
 }
 
 /// A file's name without directory and extension.
@@ -66,10 +56,10 @@ pub fn stem(path: &Path) -> String {
     stem.to_string_lossy().into_owned()
 }
 
-/// Finds the reference.
+/// Finds the reference that is asked for.
 ///
 /// # Errors
-/// [`StudyError::Reference`] where the file asked for is none of this scene. With `auto`, a
+/// [`StudyError::Reference`] where the file asked for is no reference of this scene. With `auto`, a
 /// committed reference that does not fit is passed over, and the notes say why.
 pub fn find(request: &Request, scene: &Scene) -> Result<Found, StudyError> {
     let size = scene.image.size.map(|n| n as usize);
@@ -107,7 +97,7 @@ pub fn find(request: &Request, scene: &Scene) -> Result<Found, StudyError> {
     })
 }
 
-/// The first committed reference that fits.
+/// The first committed reference that fits the scene, and its path.
 fn first_committed(
     request: &Request,
     scene: &Scene,
@@ -152,7 +142,7 @@ fn committed(scene: &Path) -> Vec<PathBuf> {
 /// paths that the points have.
 ///
 /// # Errors
-/// [`StudyError::Subject`] where the scene is not valid so.
+/// [`StudyError::Subject`] where the scene is not valid with these settings.
 pub fn own<'a>(
     subject: &Subject,
     points: impl Iterator<Item = &'a Ready> + Clone,
@@ -173,7 +163,7 @@ pub fn own<'a>(
         image("replicates", "1".to_owned()),
         image("spp", samples.to_string()),
     ]);
-    // No limit on any path is no limit on the longest.
+    // Where a point has no limit, the reference has none.
     let depths: Option<Vec<u32>> = depths.collect();
     if let Some(depth) = depths.and_then(|depths| depths.into_iter().max()) {
         overrides.set.push(image("max_depth", depth.to_string()));

@@ -1,23 +1,22 @@
-//! Time spent on a study, and what is left of it.
+//! Time spent on a study, and an estimate of the time left.
 
 use std::time::{Duration, Instant};
 
 use super::run::Watch;
 use crate::render::Progress;
 
-/// Time spent, and what is left of the plan.
 pub struct Clock<'a> {
     watch: &'a mut dyn Watch,
     start: Instant,
     planned: f64,
-    /// Planned seconds of what is done, and of what is under way.
+    /// Planned seconds of the work done, and of the render under way.
     done: [f64; 2],
-    /// Seconds spent rendering.
+    /// Seconds spent rendering so far.
     pub rendering: f64,
 }
 
 impl<'a> Clock<'a> {
-    /// Starts, with so many seconds planned.
+    /// Starts, with this many seconds planned.
     pub fn new(watch: &'a mut dyn Watch, planned: f64) -> Self {
         Self {
             watch,
@@ -28,12 +27,12 @@ impl<'a> Clock<'a> {
         }
     }
 
-    /// What comes next should take so many seconds.
+    /// Sets the planned seconds of the next render.
     pub fn expect(&mut self, seconds: f64) {
         self.done[1] = seconds;
     }
 
-    /// Does a part of the work, and tells of it.
+    /// Runs a render, and reports its progress to the watcher.
     pub fn time<T>(&mut self, what: &str, work: impl FnOnce(&mut dyn Progress) -> T) -> T {
         let start = Instant::now();
         self.tell(what, 0.0);
@@ -52,7 +51,7 @@ impl<'a> Clock<'a> {
     fn tell(&mut self, what: &str, part: f64) {
         let done = self.done[0] + part * self.done[1];
         let share = (done / self.planned.max(done)).clamp(0.0, 1.0);
-        // As fast as so far, once there is a so far; as planned before.
+        // The pace measured so far; as planned until something is done.
         let pace = if done > 0.0 {
             self.start.elapsed().as_secs_f64() / done
         } else {
@@ -63,7 +62,7 @@ impl<'a> Clock<'a> {
     }
 }
 
-/// One render within a study.
+/// Progress of one render, reported as a part of the study's.
 struct Part<'a, 'b> {
     clock: &'a mut Clock<'b>,
     what: &'a str,

@@ -1,4 +1,4 @@
-//! Are error bars honest? How often 95 % intervals of blocks of pixels hold what they should.
+//! Coverage of error bars: how often 95 % intervals of blocks of pixels hold the truth.
 //!
 //! An interval from few contributing samples holds less often than it says. For a mean of n
 //! independent samples of skewness γ and excess κ, Student's two-sided interval of level α misses
@@ -18,27 +18,26 @@ use crate::render::Unwatched;
 use crate::stats::Estimate;
 use crate::stats::blocks::{EDGE, members};
 
-/// Level of an interval's miss.
+/// Probability with which a 95 % interval misses.
 const LEVEL: f64 = 0.05;
 
-/// Contributing samples from which an interval is held to its promise.
+/// Contributing samples from which an interval must have the coverage it states.
 pub const ENOUGH: f64 = 24.0;
 
-/// Samples of a pixel in one render of the [`Survey`]: each replicate is a single sample then, and
-/// a pixel has at most so many replicates.
+/// Samples of a pixel in one render of the [`Survey`]: the largest number of replicates, so that each
+/// is a single sample.
 pub const SURVEY: u32 = 64;
 
 /// Central moments of every pixel's samples, from independent sampling.
 #[derive(Debug, Clone)]
 pub struct Survey {
-    width: usize,
-    height: usize,
+    size: [usize; 2],
     count: f64,
     /// Mean and sums of second and third powers of deviations.
     moments: Vec<[f64; 3]>,
 }
 
-/// What is known of a block.
+/// A block of pixels as the survey found it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Block {
     /// Its mean luminance.
@@ -47,21 +46,20 @@ pub struct Block {
     pub contributing: f64,
 }
 
-/// Blocks whose interval held, and all, by whether samples enough contributed.
+/// How many intervals of blocks held the truth, by the number of contributing samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Coverage {
-    /// Blocks with enough contributing samples.
+    /// Blocks with at least [`ENOUGH`] contributing samples.
     pub enough: Count,
     /// Blocks with fewer.
     pub few: Count,
 }
 
-/// So many of so many.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Count {
-    /// Intervals that held.
+    /// Intervals that held the truth.
     pub held: u64,
-    /// All of them.
+    /// All intervals.
     pub all: u64,
 }
 
@@ -70,7 +68,6 @@ impl Count {
         self.held as f64 / self.all as f64
     }
 
-    /// Both together.
     pub fn plus(self, other: Self) -> Self {
         Self {
             held: self.held + other.held,
@@ -80,7 +77,6 @@ impl Count {
 }
 
 impl Coverage {
-    /// Both together.
     pub fn plus(self, other: Self) -> Self {
         Self {
             enough: self.enough.plus(other.enough),
@@ -91,23 +87,20 @@ impl Coverage {
 
 impl Survey {
     /// Surveys a scene that samples independently, with [`SURVEY`] samples a pixel in as many
-    /// replicates, by so many renders.
+    /// replicates, by this number of renders.
     pub fn new(ready: &mut Ready, renders: u32) -> Self {
-        let [width, height] = ready.scene.image.size.map(|n| n as usize);
+        let size = ready.size();
         let mut survey = Self {
-            width,
-            height,
+            size,
             count: 0.0,
-            moments: vec![[0.0; 3]; width * height],
+            moments: vec![[0.0; 3]; size[0] * size[1]],
         };
         for render in 0..renders {
             let rendered = ready.render(render, &mut Unwatched);
             let samples = rendered.replicate_luminances();
             for (moments, values) in survey.moments.iter_mut().zip(&samples) {
-                let mut count = survey.count;
-                for value in values {
-                    add(moments, count, *value);
-                    count += 1.0;
+                for (i, value) in values.iter().enumerate() {
+                    add(moments, survey.count + i as f64, *value);
                 }
             }
             survey.count += f64::from(SURVEY);
@@ -115,7 +108,7 @@ impl Survey {
         survey
     }
 
-    /// The blocks, without those whose samples all agree: there is nothing to estimate.
+    /// The blocks of the picture; `None` where all samples agree and there is nothing to estimate.
     pub fn blocks(&self) -> Vec<Option<Block>> {
         let of = |members: &Vec<usize>| {
             let sum = |k: usize| members.iter().map(|i| self.moments[*i][k]).sum::<f64>();
@@ -131,10 +124,8 @@ impl Survey {
                 contributing: second * second * second / (third * third),
             })
         };
-        members(self.width, self.height, EDGE)
-            .iter()
-            .map(of)
-            .collect()
+        let blocks = members(self.size[0], self.size[1], EDGE);
+        blocks.iter().map(of).collect()
     }
 }
 
@@ -150,7 +141,7 @@ fn add(moments: &mut [f64; 3], count: f64, value: f64) {
     *mean += step;
 }
 
-/// How often the blocks' intervals held in one render.
+/// Counts the blocks whose intervals held the truth in one render.
 pub fn cover(ready: &mut Ready, render: u32, blocks: &[Option<Block>]) -> Coverage {
     let rendered = ready.render(render, &mut Unwatched);
     let samples = f64::from(rendered.samples);

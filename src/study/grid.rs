@@ -3,7 +3,6 @@
 use super::axis::Axis;
 use crate::chart::Key;
 
-/// One axis as abscissa, the others as curves.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Grid {
     /// The axis that a curve runs along.

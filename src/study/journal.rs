@@ -1,5 +1,5 @@
-//! What a study keeps on the disk to be taken up again: `study.toml`, what it was asked to do, so
-//! that nothing else is mixed into it, and `study.csv`, one line a render, each whole or not there.
+//! Files from which a study is continued: `study.toml`, the request, so that no other study is mixed
+//! in, and `study.csv`, one line a render, each whole or not there.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
@@ -63,10 +63,9 @@ pub fn resume(path: &Path, request: &[(&str, String)]) -> Result<Option<Grid>, S
 }
 
 fn quoted(text: &str) -> String {
-    if text.is_empty() {
-        "not given".to_owned()
-    } else {
-        format!("\"{text}\"")
+    match text {
+        "" => "not given".to_owned(),
+        text => format!("\"{text}\""),
     }
 }
 
@@ -75,13 +74,12 @@ fn quoted(text: &str) -> String {
 pub struct Journal {
     path: PathBuf,
     file: File,
-    /// The rows so far.
     pub rows: Vec<Row>,
 }
 
 impl Journal {
-    /// Opens the table, or begins it; a line that was cut off at the end of the file is taken
-    /// away.
+    /// Opens the table, or begins it; a line that was cut off at the end of the file is
+    /// removed.
     ///
     /// # Errors
     /// [`StudyError`] where the file cannot be written or is no table.
@@ -114,7 +112,7 @@ impl Journal {
         self.rows.iter().any(is_it)
     }
 
-    /// Adds a row, and brings it to the disk.
+    /// Appends a row to the file.
     ///
     /// # Errors
     /// [`StudyError`] where the file cannot be written.

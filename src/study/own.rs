@@ -1,4 +1,4 @@
-//! A reference of the study's own, and how much of it is needed.
+//! A reference that the study renders itself, and how many renders it needs.
 
 use std::path::Path;
 
@@ -11,13 +11,13 @@ use crate::render::Progress;
 pub const MARGIN: f64 = 3.0;
 
 /// Renders that the reference begins with, each of as many samples as the largest point: with the
-/// same method its error is then a quarter of that point's, and 15 degrees of freedom tell it.
+/// same method its error is then a quarter of that point's, known with 15 degrees of freedom.
 pub const FIRST: u32 = 16;
 
 /// Means and squared deviations over independent renders (B. P. Welford, Technometrics 4, 1962).
 #[derive(Debug, Clone)]
 pub struct Own {
-    /// Renders that have gone in.
+    /// Number of renders.
     pub count: u32,
     mean: [Vec<f64>; 3],
     squares: [Vec<f64>; 3],
@@ -33,7 +33,7 @@ impl Own {
         }
     }
 
-    /// Adds a render; `false` if it was stopped before its end, which leaves all as it was.
+    /// Adds a render; `false` if it was stopped before its end, which changes nothing.
     pub fn add(&mut self, ready: &mut Ready, progress: &mut dyn Progress) -> bool {
         let rendered = ready.render(self.count, progress);
         if rendered.samples < ready.scene.image.spp {
@@ -76,7 +76,8 @@ pub fn needed(count: u32, mse: f64, best_point: f64) -> u32 {
     }
 }
 
-/// Writes a study's own reference as others are: colours, variances, and what it shows.
+/// Writes a study's own reference in the form of all references: colours, variances, and attributes
+/// that say what it shows.
 ///
 /// # Errors
 /// As [`exr::write`].
@@ -102,25 +103,24 @@ pub fn write(
         ("overrides", overrides.to_owned()),
         ("settings", ready.name.clone()),
     ];
-    for (name, value) in texts.into_iter().filter(|(_, value)| !value.is_empty()) {
-        let attribute = (name.to_owned(), Attribute::Text(value));
-        picture.attributes.push(attribute);
-    }
+    let texts = texts.into_iter().filter(|(_, text)| !text.is_empty());
+    let texts = texts.map(|(name, text)| (name, Attribute::Text(text)));
     let counts = [("replicates", own.count), ("spp", ready.scene.image.spp)];
-    for (name, value) in counts {
-        let value = Attribute::whole_number(value.into());
-        picture.attributes.push((name.to_owned(), value));
-    }
+    let counts = counts.map(|(name, count)| (name, Attribute::whole_number(count.into())));
+    let all = texts
+        .chain(counts)
+        .map(|(name, value)| (name.to_owned(), value));
+    picture.attributes = all.collect();
     exr::write(path, &picture)
 }
 
-/// Reads a reference that a study has written, to go on with it.
+/// Reads a reference that a study has written, to continue that study.
 ///
 /// # Errors
-/// [`ReferenceError`] where it is not that any more.
+/// [`ReferenceError`] where the file has changed so that it cannot be one.
 pub fn read(path: &Path, size: [usize; 2]) -> Result<Reference, ReferenceError> {
-    let picture = exr::read(path)?;
-    let mut reference = Reference::of_picture(path, &picture, size)?;
-    reference.name = "own".to_owned();
-    Ok(reference)
+    Ok(Reference {
+        name: "own".to_owned(),
+        ..Reference::of_picture(path, &exr::read(path)?, size)?
+    })
 }

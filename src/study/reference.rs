@@ -33,7 +33,7 @@ pub struct Measured {
     pub relmse: f64,
     /// Signed mean error over the reference's mean.
     pub bias: Metric,
-    /// Mean of the squared standard errors that the render says it has; NaN with one replicate.
+    /// Mean of the squared standard errors that the render reports; NaN with one replicate.
     pub estimated_mse: f64,
 }
 
@@ -42,7 +42,6 @@ pub struct Measured {
 pub enum ReferenceError {
     #[error(transparent)]
     File(#[from] crate::film::Error),
-    /// It does not say how well it is known.
     #[error(
         "{}: it has no channels variance.R, variance.G, variance.B, so what of a measured error is its own \
          cannot be told; render it with replicates and write them", .0.display()
@@ -58,7 +57,7 @@ pub enum ReferenceError {
         /// The scene's.
         wanted: [usize; 2],
     },
-    /// It shows the scene with something else laid over it.
+    /// It shows another panel of the scene, or the scene with other settings.
     #[error("{}: it shows {found}, but {wanted} is to be studied", path.display())]
     Variant {
         path: PathBuf,
@@ -69,7 +68,7 @@ pub enum ReferenceError {
     Unfit { path: PathBuf, reason: String },
 }
 
-/// Keys that choose the estimator, not what is estimated; and the size, which is compared itself.
+/// Keys that choose the estimator, not what is estimated, and the size, which has a check of its own.
 const OF_THE_ESTIMATOR: [&str; 7] = [
     "image.size",
     "image.spp",
@@ -97,10 +96,10 @@ impl Reference {
         }
     }
 
-    /// Reads a reference of a scene; `set` is what else is laid over the scene's file.
+    /// Reads a reference of a scene; `set` are the settings that replace those of its file.
     ///
     /// # Errors
-    /// [`ReferenceError`]: what is wrong with it as a reference of that scene.
+    /// [`ReferenceError`] where it cannot be a reference of that scene.
     pub fn read(
         path: &Path,
         scene: &Scene,
@@ -200,7 +199,7 @@ impl Reference {
         self.variances.iter().map(|v| mean(v)).sum::<f64>() / 3.0
     }
 
-    /// Its variance in the sense of `relmse`: minus what that is of the reference itself.
+    /// Its relative variance: what its noise adds to a `relmse` on average.
     pub fn relmse(&self) -> f64 {
         let pairs = self.channels.iter().zip(&self.variances);
         let relmse = |(r, variance): (&Vec<f64>, &Vec<f64>)| {
@@ -210,12 +209,12 @@ impl Reference {
     }
 }
 
-/// R, G and B of estimates, each for itself.
+/// The means of R, G and B, one plane each.
 pub fn planes(estimates: &[Estimate]) -> [Vec<f64>; 3] {
     std::array::from_fn(|c| estimates.iter().map(|e| e.mean[c]).collect())
 }
 
-/// R, G and B of each pixel together.
+/// Three planes as one triple a pixel.
 pub fn pixels([r, g, b]: &[Vec<f64>; 3]) -> Vec<[f32; 3]> {
     let pixels = r.iter().zip(g).zip(b);
     pixels

@@ -17,7 +17,7 @@ use crate::stats::metrics::{RELMSE_EPSILON, mean};
 
 const PAGE: &str = include_str!("report.html");
 
-/// The page of a study, its charts given as SVG.
+/// The page of a study; `charts` are SVG.
 pub fn html(request: &Request, study: &Study, curves: &[Curve], charts: &[String]) -> String {
     let pictures = Pictures::of(request, study, curves);
     let name = super::choice::stem(&request.subject.path);
@@ -40,7 +40,7 @@ pub fn html(request: &Request, study: &Study, curves: &[Curve], charts: &[String
         "data" => pictures.data.clone(),
         _ => String::new(),
     };
-    // One pass over the page, so that nothing in a part is taken for a place of another.
+    // One pass, so that braces within a part are not replaced.
     let mut pieces = PAGE.split("{{");
     let mut page = pieces.next().unwrap_or_default().to_owned();
     for (name, rest) in pieces.filter_map(|piece| piece.split_once("}}")) {
@@ -50,7 +50,6 @@ pub fn html(request: &Request, study: &Study, curves: &[Curve], charts: &[String
     page
 }
 
-/// Text as HTML shows it.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
@@ -86,7 +85,7 @@ fn summary(study: &Study, curves: &[Curve]) -> String {
     text
 }
 
-/// One row a point.
+/// The table of the page, one row a point.
 fn table(curves: &[Curve], abscissa: &str) -> String {
     let heads = [
         "curve",
@@ -105,13 +104,12 @@ fn table(curves: &[Curve], abscissa: &str) -> String {
             .map(|c| format!("<{tag}>{}</{tag}>", escaped(c)));
         format!("<tr>{}</tr>\n", cells.collect::<String>())
     };
-    let mut text = format!("<table>\n{}", cells("th", &heads.map(str::to_owned)));
-    for curve in curves {
-        for point in &curve.points {
-            text.push_str(&cells("td", &numbers(curve, point)));
-        }
-    }
-    text + "</table>"
+    let points = curves.iter().flat_map(|curve| {
+        let points = curve.points.iter();
+        points.map(|point| cells("td", &numbers(curve, point)))
+    });
+    let head = cells("th", &heads.map(str::to_owned));
+    format!("<table>\n{head}{}</table>", points.collect::<String>())
 }
 
 fn numbers(curve: &Curve, point: &Point) -> [String; 9] {
@@ -119,12 +117,8 @@ fn numbers(curve: &Curve, point: &Point) -> [String; 9] {
         half if half.is_nan() => format!("{:.3e}", m.value),
         half => format!("{:.3e} ± {half:.1e}", m.value),
     };
-    let ratio = point.estimated_over_actual();
-    let floor = if point.at_floor() {
-        "reference's floor"
-    } else {
-        ""
-    };
+    let ratio = Some(point.estimated_over_actual()).filter(|ratio| !ratio.is_nan());
+    let floor = "reference's floor";
     [
         curve.label.clone(),
         Figure::number(point.x),
@@ -133,30 +127,21 @@ fn numbers(curve: &Curve, point: &Point) -> [String; 9] {
         with(point.mean(|row| row.relmse)),
         with(point.rmse()),
         with(point.mean(|row| row.bias)),
-        if ratio.is_nan() {
-            String::new()
-        } else {
-            format!("{ratio:.3}")
-        },
-        floor.to_owned(),
+        ratio.map_or_else(String::new, |ratio| format!("{ratio:.3}")),
+        if point.at_floor() { floor } else { "" }.to_owned(),
     ]
 }
 
-/// Everything that was asked for and chosen.
+/// The table of the study's request and its settings.
 fn settings(request: &Request, study: &Study) -> String {
     let overrides = &request.subject.overrides;
-    let set: Vec<String> = overrides
-        .set
-        .iter()
-        .map(|(k, v)| format!("{k}={v}"))
-        .collect();
     let [seconds, rendering] = study.seconds;
     let curves: Vec<String> = study.grid.others.iter().map(ToString::to_string).collect();
     let threads = study.rows.first().map_or(0, |row| row.threads);
     let pairs = [
         ("scene", request.subject.path.display().to_string()),
         ("panel", overrides.panel.clone().unwrap_or_default()),
-        ("laid over it", set.join(" ")),
+        ("laid over it", request.subject.settings()),
         ("abscissa", study.grid.abscissa.to_string()),
         ("curves", curves.join(" ")),
         ("renders of each point", request.replicates.to_string()),
@@ -192,31 +177,26 @@ struct Pictures {
 impl Pictures {
     fn of(request: &Request, study: &Study, curves: &[Curve]) -> Self {
         let reference = &study.reference;
-        let exposure = png::exposure(&pixels(&reference.channels));
+        let rgb = pixels(&reference.channels);
+        let exposure = png::exposure(&rgb);
         let scale = scale(curves);
-        let mut entries = vec![("reference".to_owned(), pixels(&reference.channels))];
-        let mut data: Vec<String> = Vec::new();
+        let entry = |name: &str, bytes: &[u8]| entry(name, bytes, reference.size);
+        let encoded = |rgb: &[[f32; 3]]| -> Vec<u8> {
+            rgb.iter().flat_map(|p| png::encode(*p, exposure)).collect()
+        };
+        let mut data = vec![entry("reference", &encoded(&rgb))];
         let mut pairs = String::new();
         for (i, curve) in curves.iter().enumerate() {
             let path = request.directory.join(picture_name(i));
-            let Some(rgb) = exr::read(&path).ok().and_then(|picture| picture.rgb()) else {
+            let rgb = exr::read(&path).ok().and_then(|picture| picture.rgb());
+            let fits = |rgb: &Vec<_>| rgb.len() == reference.size[0] * reference.size[1];
+            let Some(rgb) = rgb.filter(fits) else {
                 continue;
             };
-            if rgb.len() != reference.size[0] * reference.size[1] {
-                continue;
-            }
             let difference = differences(&rgb, reference, scale);
-            data.push(entry(
-                &format!("difference-{i}"),
-                &difference,
-                reference.size,
-            ));
+            data.push(entry(&format!("difference-{i}"), &difference));
+            data.push(entry(&format!("curve-{i}"), &encoded(&rgb)));
             pairs.push_str(&pair(i, curve));
-            entries.push((format!("curve-{i}"), rgb));
-        }
-        for (name, rgb) in entries {
-            let bytes: Vec<u8> = rgb.iter().flat_map(|p| png::encode(*p, exposure)).collect();
-            data.push(entry(&name, &bytes, reference.size));
         }
         let about = format!(
             "The first render of each curve's last point, left of the slider, and the reference, right of it; beside \

@@ -17,42 +17,39 @@ use crate::chart::{Key, Row};
 use crate::film::{hash, whole};
 use crate::render::memory;
 
-/// What is asked for.
+/// A study to be carried out.
 #[derive(Debug, Clone)]
 pub struct Request {
-    /// The scene and what is laid over it.
     pub subject: Subject,
-    /// What to go over.
+    /// The settings to vary.
     pub axes: Vec<Axis>,
     /// Independent renders of each point, at least 2.
     pub replicates: u32,
-    /// What to compare with.
     pub reference: Choice,
-    /// Seconds that all may take.
+    /// Seconds that the study may take.
     pub budget: f64,
-    /// Threads that work.
+    /// Number of threads.
     pub threads: u32,
-    /// Where the results go.
+    /// Directory of the results.
     pub directory: PathBuf,
     /// The command that asked for it.
     pub command: String,
 }
 
-/// Who is told how far a study is, and says whether it goes on.
+/// Follows the progress of a study, and can stop it.
 pub trait Watch {
-    /// A line about what was decided.
+    /// Takes a line about a decision, such as the planned axis.
     fn note(&mut self, line: &str);
-    /// What is being rendered, the share of all work that is done, and the seconds left.
+    /// Takes what is being rendered, the share of all work that is done, and the seconds left.
     fn at(&mut self, what: &str, share: f64, left: f64);
     fn stops(&self) -> bool;
 }
 
-/// A study as far as it has come.
+/// A study, complete or interrupted.
 #[derive(Debug)]
 pub struct Study {
     pub grid: Grid,
     pub rows: Vec<Row>,
-    /// What they were compared with.
     pub reference: Reference,
     /// Where the reference comes from, in words.
     pub about_reference: String,
@@ -62,9 +59,10 @@ pub struct Study {
     pub seconds: [f64; 2],
 }
 
-/// Samplers that a study goes over where nothing is said.
+/// Samplers that a study compares where no axis is given.
 const SAMPLERS: [&str; 3] = ["independent", "stratified", "sobol"];
-/// Carries a study out, or goes on with it.
+
+/// Carries a study out, or continues it.
 ///
 /// # Errors
 /// [`StudyError`], before anything is rendered except where the disk fails later.
@@ -76,7 +74,7 @@ pub fn run(request: &Request, watch: &mut dyn Watch) -> Result<Study, StudyError
     let base = request
         .subject
         .ready(&request.subject.overrides, String::new())?;
-    // Before there is a reference as large as the picture.
+    // Before a reference as large as the picture is made.
     budget::check_memory(&base, memory::available())?;
     let found = choice::find(request, &base.scene)?;
     for note in &found.notes {
@@ -123,25 +121,21 @@ pub fn run(request: &Request, watch: &mut dyn Watch) -> Result<Study, StudyError
     })
 }
 
-/// The axes asked for; the samplers where none is.
+/// The axes asked for, or the samplers where none is.
 fn axes(request: &Request, base: &Ready) -> Result<Vec<Axis>, StudyError> {
     let mut axes = request.axes.clone();
-    let centre = base.scene.image.sampler.is_centred();
-    if axes.is_empty() && !centre {
+    if axes.is_empty() && !base.scene.image.sampler.is_centred() {
         axes.push(Axis {
             key: Key::Sampler,
             values: SAMPLERS.map(str::to_owned).to_vec(),
         });
     }
-    let samplers = axes.iter().find(|axis| axis.key == Key::Sampler);
-    let centres = samplers.map_or([centre, !centre], |axis| {
+    let mixes_centres = |axis: &Axis| {
         let is_centre = |value: &String| value == "center";
-        [
-            axis.values.iter().any(is_centre),
-            !axis.values.iter().all(is_centre),
-        ]
-    });
-    if centres == [true, true] {
+        axis.values.iter().any(is_centre) && !axis.values.iter().all(is_centre)
+    };
+    let mut samplers = axes.iter().filter(|axis| axis.key == Key::Sampler);
+    if samplers.any(mixes_centres) {
         return Err(StudyError::TwoPictures);
     }
     Ok(axes)
@@ -158,13 +152,12 @@ fn planned(
     if let Some(grid) = Grid::new(axes)? {
         return Ok((grid, None));
     }
-    // One point a curve, to be timed.
-    let short = Axis {
-        key: Key::Spp,
-        values: vec!["64".to_owned()],
-    };
+    // One point a curve, for the pilot.
     let grid = Grid {
-        abscissa: short,
+        abscissa: Axis {
+            key: Key::Spp,
+            values: vec!["64".to_owned()],
+        },
         others: axes.to_vec(),
     };
     let mut work = Work::new(request, grid.clone(), found)?;
@@ -180,22 +173,21 @@ fn planned(
     Ok((Grid { abscissa, ..grid }, Some(costs)))
 }
 
-/// What names the study: nothing that leaves the numbers as they are.
+/// Names and values of everything that the numbers of a study depend on.
 fn said(request: &Request, base: &Ready, found: &Found) -> Vec<(&'static str, String)> {
     let source = &base.scene.source;
-    let set = request.subject.overrides.set.iter();
-    let set: Vec<_> = set.map(|(key, value)| format!("{key}={value}")).collect();
+    let reference = found.reference.as_ref().map_or("own", |r| &r.name);
     let over: Vec<_> = request.axes.iter().map(Axis::to_string).collect();
     let overrides = &request.subject.overrides;
     vec![
         ("scene", source.path.clone()),
         ("scene_hash", hash(&source.text)),
         ("panel", overrides.panel.clone().unwrap_or_default()),
-        ("set", set.join(" ")),
+        ("set", request.subject.settings()),
         ("finder", overrides.finder.clone().unwrap_or_default()),
         ("over", over.join(" ")),
         ("replicates", request.replicates.to_string()),
-        ("reference", found.name()),
+        ("reference", reference.to_owned()),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
     ]
 }

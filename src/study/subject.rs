@@ -11,12 +11,12 @@ use crate::render::seeds::seed;
 use crate::render::{Instructions, Progress, Rendered, Request, render};
 use crate::scene::{self, Overrides, Scene, SceneError};
 
-/// What is studied and on what.
+/// The scene that is studied, and the instruction set that renders it.
 #[derive(Debug, Clone)]
 pub struct Subject {
     /// The scene file.
     pub path: PathBuf,
-    /// What is laid over it at every point.
+    /// Settings that replace the file's at every point.
     pub overrides: Overrides,
     pub instructions: Instructions,
 }
@@ -28,7 +28,7 @@ pub enum SubjectError {
     Scene(#[from] SceneError),
     #[error("at {at}: {reason}")]
     Plan {
-        /// What is chosen there.
+        /// The settings of the point.
         at: String,
         reason: PlanError,
     },
@@ -39,12 +39,19 @@ pub enum SubjectError {
 pub struct Ready {
     pub scene: Scene,
     pub plan: Plan,
-    /// What names it among the renders of the study.
+    /// Its settings in words, unique in the study: the seeds of its renders are made from them.
     pub name: String,
     instructions: Instructions,
 }
 
 impl Subject {
+    /// The settings in [`Self::overrides`], `key=value` separated by spaces.
+    pub fn settings(&self) -> String {
+        let set = self.overrides.set.iter();
+        let set = set.map(|(key, value)| format!("{key}={value}"));
+        set.collect::<Vec<_>>().join(" ")
+    }
+
     /// The scene at a point.
     ///
     /// # Errors
@@ -105,7 +112,7 @@ impl Ready {
         self.render_for(self.seed(replicate), self.scene.image.spp, None, progress)
     }
 
-    /// Renders at most so many samples a pixel for at most so long.
+    /// Renders at most `samples` samples a pixel, for at most `time`.
     pub fn render_for(
         &mut self,
         seed: u64,
@@ -122,7 +129,7 @@ impl Ready {
         render(&self.plan, &request, progress)
     }
 
-    /// What a table says about each choice; empty is the renderer's own choice, or no limit.
+    /// Each setting as it stands in a table; empty is the renderer's own choice, or no limit.
     pub fn values(&self, choices: &Choices) -> [String; Key::ALL.len()] {
         let image = &self.scene.image;
         let number = |n: Option<u32>| n.map(|n| n.to_string()).unwrap_or_default();

@@ -25,7 +25,7 @@ const PILOT: [f64; 2] = [0.02, 0.1];
 /// A point of the grid.
 struct Point {
     ready: Ready,
-    /// What the table says of its settings.
+    /// Its settings as they stand in the table.
     values: [String; Key::ALL.len()],
 }
 
@@ -35,17 +35,17 @@ impl Point {
     }
 }
 
-/// Everything needed to render a grid.
+/// All points of a grid, loaded and planned.
 pub struct Work<'a> {
     request: &'a Request,
     pub grid: Grid,
     /// Curve by curve.
     points: Vec<Point>,
-    /// Points of a curve.
+    /// Number of points of a curve.
     length: usize,
     /// The scene as the study's own reference renders it.
     own: Option<Ready>,
-    /// What is laid over the scene beside the axes.
+    /// Settings that replace the scene's at every point, `key=value`.
     set: String,
 }
 
@@ -88,7 +88,7 @@ impl<'a> Work<'a> {
         all.max_by_key(sums).unwrap_or(&self.points[0].ready)
     }
 
-    /// Points that differ only in their samples.
+    /// How many neighbouring points differ only in their samples.
     fn alike(&self) -> usize {
         if self.grid.abscissa.key == Key::Spp {
             self.length
@@ -102,7 +102,7 @@ impl<'a> Work<'a> {
         let alike = self.alike();
         let each = self.request.budget * PILOT_SHARE / (self.points.len() / alike + 1) as f64;
         let each = each.clamp(PILOT[0], PILOT[1]);
-        // The last stands for all alike: its plan has the most samples.
+        // The last of them is timed: its plan has the most samples.
         let last = self.points.iter_mut().skip(alike - 1).step_by(alike);
         Costs {
             points: last
@@ -121,7 +121,7 @@ impl<'a> Work<'a> {
         points.map(priced).collect()
     }
 
-    /// Seconds of all that is not in the table yet.
+    /// Planned seconds of all renders that are not in the table yet.
     pub fn remaining(&self, costs: &Costs, journal: &Journal) -> f64 {
         let missing = |point: &Point| {
             let renders = 0..self.request.replicates;
@@ -141,8 +141,8 @@ impl<'a> Work<'a> {
         self.request.directory.join("reference.exr")
     }
 
-    /// The reference that was found, or the study's own, with where it comes from in words; `None`
-    /// when stopped on the way.
+    /// The reference that was found, or the study's own, and its origin in words; `None` when
+    /// stopped before it was finished.
     ///
     /// # Errors
     /// [`StudyError`] where the study's own cannot be written or read.
@@ -170,7 +170,8 @@ impl<'a> Work<'a> {
                     let Some(best) = self.best(&reference, clock) else {
                         return Ok(None);
                     };
-                    // A reference that would need far more than planned is said to be short of it.
+                    // A reference that needs far more than planned stays short of its aim, and
+                    // the results say so.
                     let most = 4 * own::FIRST;
                     target = own::needed(target, reference.mse(), best).min(most);
                 }

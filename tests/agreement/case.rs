@@ -2,18 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use etalon::inside::compare::Channel;
 use etalon::inside::film::names;
 use etalon::inside::film::pixels::Estimate;
 use etalon::inside::film::spectral::channel_name;
-use etalon::inside::math::instructions::Instructions;
-use etalon::inside::plan::{Plan, PlanError};
-use etalon::inside::render::bins::{BinError, BinGrid};
-use etalon::inside::render::session::{Rendered, Request, Unwatched, render};
-use etalon::inside::render::tile::Window;
-use etalon::inside::render::trace::{Singular, first_hits};
-
-use etalon::inside::compare::{Channel, Side};
-use etalon::inside::scene::{Overrides, Scene, SceneError, load};
+use etalon::inside::render::trace::first_hits;
+use etalon::inside::render::{Request, Unwatched, render};
+use etalon::inside::scene::load;
+use etalon::{BinGrid, Instructions, Overrides, Plan, Rendered, Scene, Side, Singular, Window};
 
 /// Independent scrambles per pixel: they cost little of the points' quality, and three degrees of
 /// freedom in each pixel are many in a block.
@@ -24,7 +20,6 @@ const LEAST_PIXELS: usize = 16;
 /// A scene to be rendered and judged.
 #[derive(Debug)]
 pub struct Case {
-    /// What it is called.
     pub name: String,
     pub scene: Scene,
     /// Bands of wavelengths to be judged besides R, G, B.
@@ -42,34 +37,14 @@ pub struct Region {
     pub pixels: Vec<usize>,
 }
 
-/// Why a case cannot be had.
-#[derive(Debug, thiserror::Error)]
-pub enum CaseError {
-    /// The reference does not say what it is of.
-    #[error("{} does not name its scene file (attribute sceneFile)", .0.display())]
-    Unnamed(PathBuf),
-    /// The scene cannot be had.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// It cannot be planned.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// An object cannot be placed.
-    #[error(transparent)]
-    Singular(#[from] Singular),
-    /// Its bands cannot be had.
-    #[error("{}: {reason}", path.display())]
-    Bands { path: PathBuf, reason: String },
-    /// A sample was no number.
-    #[error("{name}: {count} samples are not numbers")]
-    NotANumber { name: String, count: u64 },
-}
+/// Why a case cannot be rendered.
+pub type CaseError = Box<dyn std::error::Error>;
 
 impl Case {
     /// A case of a scene.
     ///
     /// # Errors
-    /// [`Singular`] where the first hits of its pixels cannot be had.
+    /// [`Singular`] where an object's matrix has no inverse.
     pub fn new(name: &str, mut scene: Scene, bands: Option<BinGrid>) -> Result<Self, Singular> {
         scene.image.replicates = Some(REPLICATES);
         let hits = first_hits(
@@ -105,10 +80,11 @@ impl Case {
     /// The case that a reference is of; its scene file is looked for from `root`.
     ///
     /// # Errors
-    /// [`CaseError`] where the scene or its bands cannot be had.
+    /// [`CaseError`] where the scene cannot be read or the bands are unusable.
     pub fn of_reference(name: &str, reference: &Side, root: &Path) -> Result<Self, CaseError> {
-        let unnamed = || CaseError::Unnamed(reference.path.clone());
-        let file = reference.text("sceneFile").ok_or_else(unnamed)?;
+        let file = reference
+            .text("sceneFile")
+            .ok_or("no attribute sceneFile")?;
         let set = reference.text("overrides").unwrap_or("");
         let overrides = Overrides {
             panel: reference.text("panel").map(str::to_owned),
@@ -116,17 +92,13 @@ impl Case {
             finder: None,
         };
         let scene = load(&root.join(file), &overrides)?;
-        let bands = bands(reference).map_err(|reason| CaseError::Bands {
-            path: reference.path.clone(),
-            reason,
-        })?;
-        Ok(Self::new(name, scene, bands)?)
+        Ok(Self::new(name, scene, bands(reference)?)?)
     }
 
     /// Plans and renders it.
     ///
     /// # Errors
-    /// [`CaseError`] where the plan cannot be had or samples are not numbers.
+    /// [`CaseError`] where the scene cannot be planned or samples are not numbers.
     pub fn render(&self, spp: u32, seed: u64) -> Result<Side, CaseError> {
         let mut scene = self.scene.clone();
         (scene.image.spp, scene.image.seed) = (spp, seed);
@@ -137,20 +109,17 @@ impl Case {
     /// Renders a plan made of its scene.
     ///
     /// # Errors
-    /// [`CaseError::NotANumber`].
+    /// [`CaseError`] where samples are not numbers.
     pub fn rendered(&self, plan: &Plan, spp: u32) -> Result<Side, CaseError> {
         let request = Request {
             bins: self.bands.as_ref(),
             ..Request::whole(self.scene.image.size, spp)
         };
         let rendered = render(plan, &request, &mut Unwatched);
-        if rendered.not_a_number > 0 {
-            return Err(CaseError::NotANumber {
-                name: self.name.clone(),
-                count: rendered.not_a_number,
-            });
+        match rendered.not_a_number {
+            0 => Ok(self.side(&rendered)),
+            count => Err(format!("{}: {count} samples are not numbers", self.name).into()),
         }
-        Ok(self.side(&rendered))
     }
 
     fn side(&self, rendered: &Rendered) -> Side {
@@ -186,12 +155,11 @@ fn channel<const N: usize>(name: &str, estimates: &[Estimate<N>], index: usize) 
 
 /// The bands of a reference, whose attribute lists the ends of each in nm; they must be neighbours
 /// of equal width.
-fn bands(reference: &Side) -> Result<Option<BinGrid>, String> {
+fn bands(reference: &Side) -> Result<Option<BinGrid>, CaseError> {
     let Some(text) = reference.text("bands") else {
         return Ok(None);
     };
-    let ends: Vec<[f64; 2]> =
-        serde_json::from_str(text).map_err(|e| format!("the attribute bands is no list: {e}"))?;
+    let ends: Vec<[f64; 2]> = serde_json::from_str(text)?;
     let ([low, high], [last_low, last_high]) = match (ends.first(), ends.last()) {
         (Some(first), Some(last)) => (*first, *last),
         _ => return Ok(None),
@@ -199,9 +167,8 @@ fn bands(reference: &Side) -> Result<Option<BinGrid>, String> {
     let width = high - low;
     let equal = ends.iter().all(|[low, high]| high - low == width);
     if !equal || ends.windows(2).any(|pair| pair[0][1] != pair[1][0]) {
-        return Err("its bands are no neighbours of equal width".to_owned());
+        return Err("the bands are no neighbours of equal width".into());
     }
-    let grid = BinGrid::new((low + high) / 2.0, (last_low + last_high) / 2.0, width);
-    let grid = grid.map_err(|error: BinError| error.to_string())?;
-    Ok(Some(grid))
+    let centres = [(low + high) / 2.0, (last_low + last_high) / 2.0];
+    Ok(Some(BinGrid::new(centres[0], centres[1], width)?))
 }

@@ -9,9 +9,9 @@ use etalon::inside::stats::{Estimate, student};
 
 /// Tolerance of image means, relative, where samples and reference can show that much.
 pub const DELTA: f64 = 1e-3;
-/// Largest standard error of the difference of image means to be had, relative.
+/// Largest relative standard error wanted of the difference of image means.
 pub const SHARP: f64 = 5e-4;
-/// Of what a pilot promises of errors: rare paths may have been missed by it.
+/// Share of the error wanted that a pilot must promise: rare paths may have been missed by it.
 const TRUSTED: f64 = 0.8;
 /// Probability with which all of a case's questions are answered in the first round, if everything
 /// is right and their tolerances can be chosen.
@@ -60,7 +60,7 @@ impl Question {
         (others.value > 0.0).then(|| (own.minus(&others), others.value))
     }
 
-    /// What it is called.
+    /// The channel and the place.
     pub fn name(&self, case: &Case) -> String {
         let whole = "whole picture";
         let place = self.region.map_or(whole, |i| case.regions[i].name.as_str());
