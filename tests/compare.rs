@@ -287,7 +287,7 @@ fn what_cannot_be_compared_is_said() {
 
     let mut negative = b;
     negative.channels[1] = Channel::float("variance.R", vec![-1.0; EDGE * EDGE]);
-    refused(&negative, &["is none in channel R"]);
+    refused(&negative, &["is negative or not finite in channel R"]);
 }
 
 #[test]

@@ -55,7 +55,7 @@ fn a_picture_holds_what_it_takes_to_make_it_again() {
 #[test]
 fn a_picture_says_where_it_comes_from_once() {
     let mirror = SCENE.replace("{ diffuse = 0.5 }", "{ mirror = \"Ag\" }");
-    let lights = "[[light]]\npoint = { at = [0, 9, 0], intensity = 1 }\n".repeat(2);
+    let lights = "[[light]]\npoint = [0, 9, 0]\nintensity = 1\n".repeat(2);
     let limited = SCENE.replace("spp = 8", "spp = 8, max_depth = 2");
     let [unlimited, limited] = [format!("{mirror}\n{lights}"), limited].map(|text| {
         let mut render = Render::new(Scene::parse(&text).unwrap()).unwrap();
