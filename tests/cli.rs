@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use rayon::prelude::*;
 
 use crate::oracle_support::{Row, number, primitive_fault, rows, table, vector};
-use crate::support::{Finished, Folder};
+use crate::support::{Finished, Folder, words};
 
 const HEAD: &str = "\
 camera = { from = [0, 0, 5], to = [0, 0, 0], fov = 40 }
@@ -117,13 +117,11 @@ fn numbers_and_names_go_through_unchanged() {
          inf,0,1e300,0,0,-3e300,0,far",
     );
     let fields = |row: &Row| ["id", "hit", "t", "z", "object"].map(|name| row[name].clone());
-    assert_eq!(
-        fields(&found[0]),
-        ["x, y", "1", "1.0", "-1.0", "a \"b\", c"]
-    );
+    let name = "a \"b\", c";
+    assert_eq!(fields(&found[0]), ["x, y", "1", "1.0", "-1.0", name]);
     // −5e-324 takes t = 1/5e-324 to the sphere's far side: beyond f64, so no hit is told.
     assert_eq!(fields(&found[1]), ["z", "0", "", "", ""]);
-    assert_eq!(fields(&found[2]), ["far", "1", "3.0", "0.0", "a \"b\", c"]);
+    assert_eq!(fields(&found[2]), ["far", "1", "3.0", "0.0", name]);
 }
 
 #[test]
@@ -143,10 +141,8 @@ fn limits_are_open_but_for_zero() {
          0,0,-3,0,0,-1,-3,0",
     );
     let t: Vec<&str> = found.iter().map(|row| row["t"].as_str()).collect();
-    assert_eq!(
-        t,
-        ["4.0", "2.0", "", "2.0", "0.0", "2.0", "0.0", "", "-2.0"]
-    );
+    let wanted = ["4.0", "2.0", "", "2.0", "0.0", "2.0", "0.0", "", "-2.0"];
+    assert_eq!(t, wanted);
     let id: Vec<&str> = found.iter().map(|row| row["id"].as_str()).collect();
     assert_eq!(id, ["0", "1", "2", "3", "4", "5", "6", "7", "8"]);
 }
@@ -204,12 +200,8 @@ fn implicit_surfaces_have_their_known_roots() {
     // beside the point at distances from 2⁻²⁶ of the box's size 3, so 2e-7 covers the curvature.
     assert_eq!(heart[0]["t"], "2.0");
     for (key, component) in [("nx", -2.0), ("ny", 0.0), ("nz", -1.0)] {
-        let wanted = component / 5.0_f64.sqrt();
-        assert!(
-            (number(&heart[0], key) - wanted).abs() < 2e-7,
-            "{:?}",
-            heart[0]
-        );
+        let off = number(&heart[0], key) - component / 5.0_f64.sqrt();
+        assert!(off.abs() < 2e-7, "{:?}", heart[0]);
     }
     // (9/4 y² − 1)³ on the y axis: the cube of a rounded difference keeps its sign, and the
     // difference has the wrong sign for y within a few units of rounding only.
@@ -366,7 +358,7 @@ fn what_cannot_be_done_ends_with_2() {
         ("paint scene.toml", "unrecognized subcommand 'paint'"),
     ] {
         let message = format!("error: {message}");
-        let said = scene.refused(&arguments.split(' ').collect::<Vec<_>>());
+        let said = scene.refused(&words(arguments));
         assert!(said.starts_with(&message), "{arguments}: {said}");
     }
 }

@@ -6,7 +6,7 @@ use etalon::inside::film::names;
 use etalon::{Attribute, Estimate, Picture, Values};
 
 use crate::statistics_support::moments;
-use crate::support::{Folder, assert_says, attribute, value_bits, wide};
+use crate::support::{Folder, assert_says, attribute, value_bits, wide, words};
 
 /// A checkered floor, a glass ball, a mirror, a lamp and a dim sky: every kind of path.
 const SCENE: &str = r#"
@@ -247,13 +247,7 @@ fn a_flat_environment_is_1_in_every_bin() {
 #[test]
 fn files_are_named_after_scene_and_panel() {
     let folder = Folder::new(SCENE);
-    let run = |rest: &str| {
-        folder.done(
-            &format!("render scene.toml {rest}")
-                .split(' ')
-                .collect::<Vec<_>>(),
-        )
-    };
+    let run = |rest: &str| folder.done(&words(&format!("render scene.toml {rest}")));
     run("--spp 1");
     assert_eq!(run("--panel all").lines().count(), 2);
     run("--panel a -o x.y.exr --quiet");

@@ -289,32 +289,9 @@ fn senseless_expressions_are_errors() {
     let deep = format!("{}x{}", "(".repeat(5_000), ")".repeat(5_000));
     let long = vec!["x"; 10_000].join("*y+");
     let minus = "-".repeat(5_000);
-    let texts = [
-        " ",
-        "0",
-        "0*x",
-        "1/0",
-        "x/0",
-        "sqrt(-1)*x",
-        "max(x, 0/0)",
-        "atan2(0, 0)*x",
-        "min(x, x) - x",
-        "x^100000",
-        "x y",
-        "3x",
-        "(x",
-        "sin x",
-        "1e",
-        "floor(x)",
-        "NaN*x",
-        "inf*x",
-        "é",
-        "x..y",
-        &deep,
-        &long,
-        &minus,
-    ];
-    for text in texts {
+    let short = " ;0;0*x;1/0;x/0;sqrt(-1)*x;max(x, 0/0);atan2(0, 0)*x;min(x, x) - x;x^100000;x y;3x;\
+                 (x;sin x;1e;floor(x);NaN*x;inf*x;é;x..y";
+    for text in short.split(';').chain([&*deep, &*long, &*minus]) {
         let error = parse(text, &[]).err();
         let error = error.unwrap_or_else(|| panic!("{text:.40} is an expression"));
         assert!(!error.to_string().is_empty());

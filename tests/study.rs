@@ -8,7 +8,7 @@ use etalon::inside::film::{exr, hash, names};
 use etalon::inside::study::axis::Axis;
 use etalon::{Attribute, Picture};
 
-use crate::support::{Folder, assert_says};
+use crate::support::{Folder, assert_says, words};
 
 /// A closed ball that glows and reflects half of what falls on it, seen from inside: 0.5/(1 − 0.5).
 const SCENE: &str = r#"
@@ -27,13 +27,13 @@ materials = { wall = { emit = 1 } }
 
 /// What a study says that is carried out.
 #[track_caller]
-fn study(folder: &Folder, arguments: &[&str]) -> String {
-    folder.done(&[&["study", "scene.toml", "--quiet"], arguments].concat())
+fn study(folder: &Folder, arguments: &str) -> String {
+    folder.done(&words(&format!("study scene.toml --quiet {arguments}")))
 }
 
 #[track_caller]
-fn refused(folder: &Folder, arguments: &[&str]) -> String {
-    folder.refused(&[&["study", "scene.toml"], arguments].concat())
+fn refused(folder: &Folder, arguments: &str) -> String {
+    folder.refused(&words(&format!("study scene.toml {arguments}")))
 }
 
 fn rows(folder: &Folder, table: &str) -> Vec<Row> {
@@ -48,24 +48,12 @@ fn timeless(row: &Row) -> Row {
     }
 }
 
-const GRID: [&str; 6] = [
-    "--over",
-    "spp=1..16x4",
-    "--over",
-    "sampler=independent,sobol",
-    "--replicates",
-    "4",
-];
-
-/// The grid with more arguments.
-fn grid<'a>(more: &[&'a str]) -> Vec<&'a str> {
-    [&GRID, more].concat()
-}
+const GRID: &str = "--over spp=1..16x4 --over sampler=independent,sobol --replicates 4";
 
 #[test]
 fn a_study_writes_rows_charts_and_a_report() {
     let folder = Folder::new(SCENE);
-    let said = study(&folder, &grid(&["-o", "out"]));
+    let said = study(&folder, &format!("{GRID} -o out"));
     assert_says(&said, &["the truth that the scene file names"]);
     let rows = rows(&folder, "out/study.csv");
     assert_eq!(rows.len(), 3 * 2 * 4);
@@ -99,11 +87,11 @@ fn a_study_writes_rows_charts_and_a_report() {
 #[test]
 fn errors_of_the_panel_are_against_the_panels_truth() {
     let folder = Folder::new(SCENE);
-    let study = |more: &[&str]| {
-        let grid = ["--over", "spp=64", "--replicates", "8", "--panel", "bright"];
-        study(&folder, &[&grid, more].concat())
+    let study = |more: &str| {
+        let grid = "--over spp=64 --replicates 8 --panel bright";
+        study(&folder, &format!("{grid} {more}"))
     };
-    study(&["-o", "out"]);
+    study("-o out");
     // The wrong truth, 1 instead of 2, would show as a bias of 1.
     for row in rows(&folder, "out/study.csv") {
         assert_eq!(row.panel, "bright");
@@ -111,7 +99,7 @@ fn errors_of_the_panel_are_against_the_panels_truth() {
         assert!(scores < 6.0, "{row}: {}", row.bias);
         assert!(row.bias_standard_error < 0.05);
     }
-    study(&["-o", "wrong", "--reference", "1"]);
+    study("-o wrong --reference 1");
     for row in rows(&folder, "wrong/study.csv") {
         assert!(row.bias > 0.9, "{row}: {}", row.bias);
     }
@@ -120,7 +108,7 @@ fn errors_of_the_panel_are_against_the_panels_truth() {
 #[test]
 fn an_interrupted_study_goes_on_where_it_stopped() {
     let folder = Folder::new(SCENE);
-    let (arguments, table) = (grid(&["-o", "out"]), "out/study.csv");
+    let (arguments, table) = (format!("{GRID} -o out"), "out/study.csv");
     study(&folder, &arguments);
     let whole = folder.text(table);
     let before = rows(&folder, table);
@@ -138,7 +126,7 @@ fn an_interrupted_study_goes_on_where_it_stopped() {
     // Nothing is left to do: nothing is done.
     study(&folder, &arguments);
     assert_eq!(folder.text(table), again);
-    let other = [&GRID[..4], &["--replicates", "5", "-o", "out"]].concat();
+    let other = arguments.replace("--replicates 4", "--replicates 5");
     assert_says(&refused(&folder, &other), &["another study", "replicates"]);
 }
 
@@ -146,7 +134,7 @@ fn an_interrupted_study_goes_on_where_it_stopped() {
 fn without_truth_a_study_renders_its_own_reference() {
     let scene = SCENE.replace("truth = 1\n", "").replace("truth = 2\n", "");
     let folder = Folder::new(&scene);
-    let said = study(&folder, &grid(&["-o", "out"]));
+    let said = study(&folder, &format!("{GRID} -o out"));
     assert_says(&said, &["rendered by the study itself"]);
     let rows = rows(&folder, "out/study.csv");
     let best = curves(&rows, Key::Spp)
@@ -160,10 +148,10 @@ fn without_truth_a_study_renders_its_own_reference() {
     assert!(own > 0.0 && best / own > 0.75 * 3.0, "{best} {own}");
     assert!(rows.iter().all(|row| row.reference == "own"));
     // A second study with this one's reference as a file: its variance is known, its hash agrees.
-    let reference = ["--reference", "out/reference.exr"];
-    study(&folder, &[&grid(&["-o", "again"]), &reference[..]].concat());
-    let panel = [&reference[..], &["--panel", "bright"]].concat();
-    assert_says(&refused(&folder, &panel), &["the panel \"bright\""]);
+    let reference = "--reference out/reference.exr";
+    study(&folder, &format!("{GRID} -o again {reference}"));
+    let message = refused(&folder, &format!("{reference} --panel bright"));
+    assert_says(&message, &["the panel \"bright\""]);
 }
 
 #[test]
@@ -194,10 +182,10 @@ fn references_that_are_none_are_refused_with_a_reason() {
         let attribute = Attribute::Text(hash.to_owned());
         picture.attributes.push(("sceneHash".to_owned(), attribute));
         exr::write(&folder.path("reference.exr"), &picture).unwrap();
-        let message = refused(&folder, &["--reference", "reference.exr"]);
+        let message = refused(&folder, "--reference reference.exr");
         assert_says(&message, &words);
     }
-    let missing = refused(&folder, &["--reference", "nowhere.exr"]);
+    let missing = refused(&folder, "--reference nowhere.exr");
     assert_says(&missing, &["nowhere.exr"]);
 }
 
@@ -225,15 +213,14 @@ fn grids_that_cannot_be_are_refused_with_what_would_fit() {
             &["image.size=["],
         ),
     ] {
-        let arguments: Vec<&str> = arguments.split(' ').collect();
-        assert_says(&refused(&folder, &arguments), words);
+        assert_says(&refused(&folder, arguments), words);
     }
 }
 
 #[test]
 fn several_tables_go_into_one_chart() {
     let folder = Folder::new(SCENE);
-    study(&folder, &grid(&["-o", "out"]));
+    study(&folder, &format!("{GRID} -o out"));
     // Another program, ten times as slow and as accurate, with the required columns only.
     let mut other = String::from("renderer,scene,spp,seconds,relmse,sampler\n");
     for row in rows(&folder, "out/study.csv") {
@@ -243,8 +230,8 @@ fn several_tables_go_into_one_chart() {
         }
     }
     folder.write("slow.csv", other);
-    let tables = ["chart", "out/study.csv", "slow.csv"];
-    let said = folder.done(&[&tables[..], &["-o", "both", "--at", "1e-2"]].concat());
+    let chart = "chart out/study.csv slow.csv -o both --at 1e-2";
+    let said = folder.done(&words(chart));
     assert_says(&said, &["3 curves of 36 renders", "etalon takes", "slow"]);
     let svg = folder.text("both.svg");
     assert_says(&svg, &["slow, multijitter", "etalon, sobol"]);

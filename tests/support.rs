@@ -115,6 +115,11 @@ impl Folder {
     }
 }
 
+/// The words of a command, none of which has a space.
+pub fn words(command: &str) -> Vec<&str> {
+    command.split(' ').collect()
+}
+
 /// The names of the files in a folder.
 pub fn files(folder: &Path) -> BTreeSet<String> {
     let entries = std::fs::read_dir(folder).unwrap();
@@ -126,8 +131,8 @@ pub fn files(folder: &Path) -> BTreeSet<String> {
 /// Whether all of these words are in a text.
 #[track_caller]
 pub fn assert_says(text: &str, words: &[&str]) {
-    for words in words {
-        assert!(text.contains(words), "{words:?} is not in {text}");
+    for part in words {
+        assert!(text.contains(part), "{part:?} is not in {text}");
     }
 }
 
