@@ -173,7 +173,7 @@
 //! stats →
 //! film → sample, spectrum, math
 //! scene → camera, declare, field, light, material, shape, sample, spectrum, math
-//! plan → scene, integrate, film, camera, declare, light, material, shape, sample, spectrum, math
+//! plan → scene, integrate, film, camera, declare, light, shape, sample, spectrum, math
 //! render → plan, scene, integrate, film, camera, shape, sample, spectrum, stats, math
 //! compare → scene, film, spectrum, stats
 //! chart → stats

@@ -12,7 +12,7 @@ use super::{
     Camera, FinderChoice, Image, Light, PrecisionChoice, Projection, ProjectionKind, SamplerKind,
     Scene, Source, materials, objects, quantities,
 };
-use crate::declare::Role;
+use crate::declare::{Declaration, Role};
 use crate::light::SourceKind;
 
 const TOP_KEYS: &[&str] = &[
@@ -220,16 +220,19 @@ fn lights(spectra: &Spectra<'_>, item: &Item<'_>) -> Option<Vec<Light>> {
 fn light(spectra: &Spectra<'_>, item: Item<'_>) -> Option<Light> {
     let declarations = || SourceKind::ALL.iter().map(|kind| kind.declaration());
     let main: Vec<&str> = declarations().map(|own| own.main.key).collect();
-    let beside = declarations().flat_map(|own| own.beside);
-    let beside: Vec<&str> = beside.map(|own| own.key).collect();
-    let keys = [main.as_slice(), &beside].concat();
+    let of_kind = |own: Declaration| {
+        let beside = own.beside.iter().map(|other| other.key);
+        [own.main.key].into_iter().chain(beside)
+    };
+    let keys: Vec<&str> = declarations().flat_map(of_kind).collect();
     let fields = Fields::open(item, &keys)?;
     let (key, place) = fields.exactly_one(&main)?;
     let of_key = |kind: &&SourceKind| kind.declaration().main.key == key;
     let kind = *SourceKind::ALL.iter().find(of_key)?;
     let own = kind.declaration();
     let own_keys: Vec<&str> = own.beside.iter().map(|own| own.key).collect();
-    for other in beside.iter().filter(|other| !own_keys.contains(other)) {
+    let allowed = |other: &&&str| main.contains(other) || own_keys.contains(other);
+    for other in keys.iter().filter(|other| !allowed(other)) {
         if let Some(entry) = fields.table.entry(other) {
             let message = format!("\"{other}\" contradicts \"{key}\" in light");
             return spectra

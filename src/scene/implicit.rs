@@ -158,7 +158,7 @@ fn check_parameter(report: &Report, entry: &Entry, surface: Option<&NamedSurface
         return check_name(key).map_or_else(
             |problem| {
                 let error = ExpressionError::from(problem);
-                report.complain(place, error.to_string(), error.expected)
+                report.fail(place, error.to_string(), error.expected.unwrap_or_default())
             },
             Some,
         );

@@ -83,7 +83,7 @@ impl Setting {
             let expected = "dotted keys, such as camera.lens.radius=0.3";
             return report.fail(key_place, format!("\"{key}\" is not a path"), expected);
         };
-        if keys.len() > DEPTH {
+        if !(1..=DEPTH).contains(&keys.len()) {
             let message = format!("path of {} keys", keys.len());
             return report.fail(key_place, message, format!("at most {DEPTH} keys"));
         }
