@@ -26,7 +26,7 @@ impl Table {
         }
     }
 
-    /// The table at `path` of the same columns, its rows whose first column contains `only`.
+    /// The table at `path` of the same columns: the rows that are wanted by their scene and panel.
     ///
     /// # Errors
     /// A sentence about a file that cannot be read or has other columns.
@@ -34,7 +34,7 @@ impl Table {
         columns: &'static [&'static str],
         keys: usize,
         path: &Path,
-        only: &str,
+        wanted: impl Fn(&[String]) -> bool,
     ) -> Result<Self, String> {
         let failed = |reason: csv::Error| format!("{}: {reason}", path.display());
         let mut file = csv::Reader::from_path(path).map_err(failed)?;
@@ -43,7 +43,7 @@ impl Table {
         }
         let rows = file.deserialize::<Vec<String>>();
         let rows: Vec<_> = rows.collect::<Result<_, _>>().map_err(failed)?;
-        let rows = rows.into_iter().filter(|row| row[0].contains(only));
+        let rows = rows.into_iter().filter(|row| wanted(&row[..2]));
         Ok(Self::new(columns, keys, rows))
     }
 
