@@ -27,9 +27,9 @@ struct Arguments {
     /// The etalon that renders.
     #[arg(long, default_value = env!("CARGO_BIN_EXE_etalon"))]
     binary: PathBuf,
-    /// Only scenes whose path contains this.
-    #[arg(long, conflicts_with = "write")]
-    only: Option<String>,
+    /// Only scenes that contain one of these in their path or, after a space, their panel.
+    #[arg(long, num_args = 1.., conflicts_with = "write")]
+    only: Vec<String>,
     /// Write the tables instead of comparing with them.
     #[arg(long)]
     write: bool,
@@ -52,8 +52,11 @@ fn main() -> ExitCode {
 /// Whether everything is as the tables say.
 fn run(arguments: &Arguments) -> Result<bool, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let only = arguments.only.as_deref().unwrap_or("");
-    let variants = scenes::variants(root, only)?;
+    let wanted = |key: &[String]| {
+        let name = key.join(" ");
+        arguments.only.is_empty() || arguments.only.iter().any(|part| name.contains(part))
+    };
+    let variants = scenes::variants(root, wanted)?;
     let binary = Binary::new(&arguments.binary, root)?;
     let start = Instant::now();
     let plans = variants
@@ -85,7 +88,7 @@ fn run(arguments: &Arguments) -> Result<bool, String> {
             made.write(&path)?;
             continue;
         }
-        for difference in made.differences(&Table::read(kind, &path, only)?) {
+        for difference in made.differences(&Table::read(kind, &path, wanted)?) {
             println!("{}: {difference}", kind.file);
             same = false;
         }

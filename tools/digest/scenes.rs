@@ -32,11 +32,11 @@ impl Variant {
     }
 }
 
-/// All variants of the scenes whose path contains `only`; a file's own scene is one of them.
+/// The variants of all scenes that are wanted by their keys; a file's own scene is one of them.
 ///
 /// # Errors
 /// A sentence about a file that cannot be read, or that there is no such scene.
-pub fn variants(root: &Path, only: &str) -> Result<Vec<Variant>, String> {
+pub fn variants(root: &Path, wanted: impl Fn(&[String]) -> bool) -> Result<Vec<Variant>, String> {
     let mut all = Vec::new();
     for folder in FOLDERS {
         let path = root.join(folder);
@@ -44,13 +44,14 @@ pub fn variants(root: &Path, only: &str) -> Result<Vec<Variant>, String> {
         for entry in std::fs::read_dir(&path).map_err(failed)? {
             let file = entry.map_err(failed)?.file_name();
             let scene = format!("{folder}/{}", file.display());
-            if scene.ends_with(".toml") && scene.contains(only) {
+            if scene.ends_with(".toml") {
                 all.extend(panels(root, &scene).map_err(|reason| reason.to_string())?);
             }
         }
     }
+    all.retain(|variant| wanted(&variant.key()));
     if all.is_empty() {
-        return Err(format!("no scene's path contains {only:?}"));
+        return Err("there is no such scene".to_owned());
     }
     Ok(all)
 }

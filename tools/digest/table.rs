@@ -27,11 +27,15 @@ impl Table {
         Self { kind, rows }
     }
 
-    /// The table at `path`, its rows whose first column contains `only`.
+    /// The table at `path`: the rows that are wanted by their scene and panel.
     ///
     /// # Errors
     /// A sentence about a file that cannot be read or has other columns.
-    pub fn read(kind: &'static Kind, path: &Path, only: &str) -> Result<Self, String> {
+    pub fn read(
+        kind: &'static Kind,
+        path: &Path,
+        wanted: impl Fn(&[String]) -> bool,
+    ) -> Result<Self, String> {
         let failed = |reason: csv::Error| format!("{}: {reason}", path.display());
         let mut file = csv::Reader::from_path(path).map_err(failed)?;
         if file.headers().map_err(failed)? != kind.columns {
@@ -39,7 +43,7 @@ impl Table {
         }
         let rows = file.deserialize::<Vec<String>>();
         let mut rows: Vec<_> = rows.collect::<Result<_, _>>().map_err(failed)?;
-        rows.retain(|row| row[0].contains(only));
+        rows.retain(|row| wanted(&row[..2]));
         Ok(Self::new(kind, rows))
     }
 
