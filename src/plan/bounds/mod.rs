@@ -133,7 +133,7 @@ fn start(scene: &Scene) -> f64 {
         return lens;
     }
     let [x, y] = scene.image.size.map(f64::from);
-    lens + projection.height() / 2.0 * (x / y).hypot(1.0)
+    lens + projection.height() / 2.0 * libm::hypot(x / y, 1.0)
 }
 
 /// The object's map with the camera at the origin.
