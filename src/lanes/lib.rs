@@ -72,6 +72,7 @@ macro_rules! kinds {
 
             $(
                 #[doc = concat!("[`", stringify!($trait), "::", stringify!($constant), "`].")]
+                #[inline(always)]
                 pub const fn $method(self) -> $type {
                     of!(self, $constant)
                 }

@@ -9,7 +9,7 @@ use crate::film::pixels::Pixels;
 use crate::integrate::needs::Needs;
 use crate::math::lanes::Scalar;
 use crate::sample::replicates::Replicates;
-use crate::scene::{Lens, Object, Scene, Shape};
+use crate::scene::{FinderChoice, Lens, Object, Scene, Shape};
 
 /// As many names as a line lists.
 const LISTED: usize = 6;
@@ -270,35 +270,18 @@ fn intersection(scene: &Scene, plan: &Plan) -> String {
             "; shadow rays ask {occluders}, as the others can hide no light"
         ));
     }
-    let finders: Vec<&str> = of_model!(&plan.tables, model => {
+    let finders: Vec<FinderChoice> = of_model!(&plan.tables, model => {
         let implicits = model.implicits.iter();
-        implicits.map(|(_, implicit)| implicit.finder().name()).collect()
+        implicits.map(|(_, implicit)| implicit.finder().kind).collect()
     });
-    for (name, how) in FINDERS {
-        let count = finders.iter().filter(|finder| **finder == name).count();
+    for kind in FinderChoice::ALL.iter().rev() {
+        let count = finders.iter().filter(|finder| *finder == kind).count();
         if count > 0 {
-            text.push_str(&format!("; {count} implicit by {how}"));
+            text.push_str(&format!("; {count} implicit by {}", kind.words()));
         }
     }
     text
 }
-
-/// Finders of implicit surfaces and how they work.
-const FINDERS: [(&str, &str); 4] = [
-    (
-        "polynomial",
-        "certified roots of polynomials: in lanes of f64, then of double-double, then exactly",
-    ),
-    (
-        "interval",
-        "interval enclosures in lanes of f64, cut until each answer is proved",
-    ),
-    (
-        "sphere-trace",
-        "steps as long as a proved Lipschitz bound allows",
-    ),
-    ("sign-change", "equal steps and bisection, not certified"),
-];
 
 fn sampler(scene: &Scene, plan: &Plan) -> String {
     let name = scene.image.sampler.words();

@@ -257,7 +257,7 @@ impl<'a> Item<'a> {
     /// A finder of implicit surfaces, and where it is written.
     pub fn finder(&self) -> Option<DefaultFinder> {
         let place = self.node.place;
-        let (_, finder) = self.choice(FinderChoice::NAMES, |(name, _)| name)?;
+        let finder = self.choice(FinderChoice::ALL, FinderChoice::name)?;
         Some((finder, Some(place)))
     }
 }

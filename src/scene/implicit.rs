@@ -83,7 +83,7 @@ fn check(implicit: &Implicit, written: &Item<'_>, chosen_at: Option<Place>) -> O
                         logarithm of zero or division by zero everywhere";
         return written.fail(message, expected);
     }
-    if implicit.finder != FinderChoice::Polynomial || polynomial {
+    if implicit.finder.takes_any_field() || polynomial {
         return Some(());
     }
     let problem = if implicit.closed {
@@ -95,8 +95,14 @@ fn check(implicit: &Implicit, written: &Item<'_>, chosen_at: Option<Place>) -> O
         let rest = if shown.len() < text.len() { "…" } else { "" };
         format!("a field that is no polynomial: {shown}{rest}")
     };
-    let message = format!("the finder \"polynomial\" for {problem}");
-    let expected = "\"auto\", \"interval\", \"sphere-trace\" or \"sign-change\"";
+    let message = format!("the finder \"{}\" for {problem}", implicit.finder.name());
+    let any = FinderChoice::ALL.iter().rev();
+    let any = any.filter(|finder| finder.takes_any_field());
+    let mut names: Vec<_> = any.map(|finder| format!("\"{}\"", finder.name())).collect();
+    // "auto" first.
+    names.rotate_right(1);
+    let last = names.pop().unwrap_or_default();
+    let expected = format!("{} or {last}", names.join(", "));
     let place = chosen_at.unwrap_or(written.node.place);
     written.report.fail(place, message, expected)
 }

@@ -14,10 +14,10 @@ use crate::shape::{Length, ShapeKind};
 
 /// Names of all shapes.
 pub(super) const SHAPES: &[&str] = &{
-    let mut names = ["implicit"; ShapeKind::NAMES.len() + 1];
+    let mut names = ["implicit"; ShapeKind::ALL.len() + 1];
     let mut i = 0;
-    while i < ShapeKind::NAMES.len() {
-        names[i] = ShapeKind::NAMES[i];
+    while i < ShapeKind::ALL.len() {
+        names[i] = ShapeKind::ALL[i].name();
         i += 1;
     }
     names

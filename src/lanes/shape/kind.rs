@@ -129,74 +129,26 @@ pub trait Canonical {
     }
 }
 
-macro_rules! shapes {
-    ($($kind:ident in $module:ident,)*) => {
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-        pub enum ShapeKind {
-            $(
-                #[doc = concat!("See [`", stringify!($kind), "`](super::", stringify!($module), "::", stringify!($kind), ").")]
-                $kind,
-            )*
-        }
-
-        /// Evaluates an expression about the type of a kind.
-        macro_rules! of {
-            ($self:expr, $item:ident $arguments:tt) => {
-                match $self {
-                    $(ShapeKind::$kind => super::$module::$kind::$item $arguments,)*
-                }
-            };
-            ($self:expr, $item:ident) => {
-                match $self {
-                    $(ShapeKind::$kind => super::$module::$kind::$item,)*
-                }
-            };
-        }
-
-        impl ShapeKind {
-            /// All of them, in the order in which messages list them.
-            pub const ALL: &'static [Self] = &[$(Self::$kind,)*];
-
-            pub const NAMES: &'static [&'static str] =
-                &[$(<super::$module::$kind as Canonical>::NAME,)*];
-        }
-    };
-}
-
-shapes! {
-    Sphere in sphere,
-    Cube in cube,
-    Cylinder in cylinder,
-    Disk in disk,
-    Rectangle in rectangle,
-    Plane in plane,
-}
-
-/// The constants of [`Canonical`] by methods.
-macro_rules! constants {
-    ($(fn $method:ident(self) -> $type:ty = $constant:ident;)*) => {
-        $(
-            #[doc = concat!("[`Canonical::", stringify!($constant), "`].")]
-            #[inline(always)]
-            pub fn $method(self) -> $type {
-                of!(self, $constant)
-            }
-        )*
-    };
+kinds! {
+    ShapeKind of Canonical {
+        Sphere in sphere,
+        Cube in cube,
+        Cylinder in cylinder,
+        Disk in disk,
+        Rectangle in rectangle,
+        Plane in plane,
+    }
+    fn name(self) -> &'static str = NAME;
+    fn lengths(self) -> &'static [Length] = LENGTHS;
+    fn is_centered(self) -> bool = CENTERED;
+    fn is_flat(self) -> bool = FLAT;
+    fn is_convex(self) -> bool = CONVEX;
+    fn emitter(self) -> Emitter = EMITTER;
+    fn faces(self) -> &'static [(usize, &'static [f64])] = FACES;
+    fn round(self) -> Option<usize> = ROUND;
 }
 
 impl ShapeKind {
-    constants! {
-        fn name(self) -> &'static str = NAME;
-        fn lengths(self) -> &'static [Length] = LENGTHS;
-        fn is_centered(self) -> bool = CENTERED;
-        fn is_flat(self) -> bool = FLAT;
-        fn is_convex(self) -> bool = CONVEX;
-        fn emitter(self) -> Emitter = EMITTER;
-        fn faces(self) -> &'static [(usize, &'static [f64])] = FACES;
-        fn round(self) -> Option<usize> = ROUND;
-    }
-
     pub fn corners(self) -> Option<[DVec3; 2]> {
         of!(self, corners())
     }

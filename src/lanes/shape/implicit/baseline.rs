@@ -14,7 +14,8 @@ use crate::math::affine::Affine;
 use crate::math::double_double::DoubleDouble;
 use crate::math::number::{Number, power_of_two};
 use crate::root::sign_change::first_change;
-use crate::shape::implicit::Implicit;
+use crate::shape::implicit::finder::{Finder, RootFinder};
+use crate::shape::implicit::{FinderChoice, Implicit};
 use crate::shape::ladder::{Ladder, ScaledRay};
 use crate::shape::{Query, Ray, SingularMatrix, Tier};
 
@@ -25,6 +26,21 @@ pub struct SteppingFinder {
     steps: u32,
     pub ladder: Ladder,
     to_world: Affine,
+}
+
+/// The finder by changes of sign, of which each caller has its own.
+pub struct SignChange;
+
+impl RootFinder for SignChange {
+    const NAME: &'static str = "sign-change";
+    const WORDS: &'static str = "equal steps and bisection, not certified";
+
+    fn place(_: &Implicit, _: &Ladder) -> Finder {
+        Finder {
+            kind: FinderChoice::SignChange,
+            prover: None,
+        }
+    }
 }
 
 /// Where a ray meets an implicit surface.

@@ -16,11 +16,16 @@ use glam::DVec3;
 
 pub use place::Certified;
 
+use super::enclosed::Interval;
+use super::finder::{Finder, Prover, RootFinder};
+use super::{FinderChoice, Implicit};
+use crate::field::tape::Tape;
 use crate::math::instructions::{DoubleLanes, Instructions, Job};
 use crate::math::number::{binary_exponent, power_of_two};
 use crate::math::packet::each;
 use crate::math::words::{Pair, Plain, Row};
 use crate::root::exact::ExactRoot;
+use crate::shape::ladder::Ladder;
 use crate::shape::{Ray, Tier};
 
 pub const WIDTH: usize = 8;
@@ -340,5 +345,59 @@ fn simplest(low: f64, high: f64) -> Option<f64> {
             return Some(x);
         }
         step *= 0.5;
+    }
+}
+
+/// A polynomial surface and how far its finder goes.
+#[derive(Debug)]
+struct Tiers {
+    certified: Certified,
+    /// Whether what double-double leaves undecided is decided exactly.
+    exact: bool,
+}
+
+impl Prover for Tiers {
+    fn first_hits(&self, packet: &Packet, sharp: bool, workspace: &mut Workspace) -> Answers {
+        let exact = self.exact;
+        let effort = Effort { sharp, exact };
+        self.certified.first_hits(packet, effort, workspace)
+    }
+
+    fn gradient_direction(&self, tape: &Tape, ray: &Ray, enclosure: [f64; 2]) -> Option<DVec3> {
+        self.certified.gradient_direction(tape, ray, enclosure)
+    }
+}
+
+/// Certified isolation for polynomials, interval subdivision for other fields.
+fn placed(implicit: &Implicit, ladder: &Ladder, exact: bool) -> Finder {
+    match Certified::new(&implicit.field.tape, implicit.inside, ladder) {
+        Some(certified) => Finder::proved(FinderChoice::Polynomial, Tiers { certified, exact }),
+        None => Interval::place(implicit, ladder),
+    }
+}
+
+/// The finder that suits the field.
+pub struct Auto;
+
+impl RootFinder for Auto {
+    const NAME: &'static str = "auto";
+    const WORDS: &'static str = "the finder that suits the field";
+
+    fn place(implicit: &Implicit, ladder: &Ladder) -> Finder {
+        placed(implicit, ladder, true)
+    }
+}
+
+/// Isolation of the roots of a polynomial along the ray, without the last, exact tier.
+pub struct Polynomial;
+
+impl RootFinder for Polynomial {
+    const NAME: &'static str = "polynomial";
+    const WORDS: &'static str =
+        "certified roots of polynomials: in lanes of f64, then of double-double, then exactly";
+    const ANY_FIELD: bool = false;
+
+    fn place(implicit: &Implicit, ladder: &Ladder) -> Finder {
+        placed(implicit, ladder, false)
     }
 }

@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 
-use super::Implicit;
 use super::along::Along;
-use super::certified::{Answers, Packet};
+use super::certified::{Answers, Packet, Workspace};
 use super::clip::{Clipped, clipped};
+use super::finder::{Finder, Prover, RootFinder};
+use super::{FinderChoice, Implicit};
 use crate::field::interval_program::IntervalProgram;
 use crate::field::over_box::survey;
 use crate::field::tape::Tape;
@@ -248,7 +249,7 @@ pub struct EnclosedPacket {
     field: EnclosedField,
     ladder: Ladder,
     inside: [DVec3; 2],
-    pub method: Method,
+    method: Method,
     /// Largest sum of magnitudes of a row of the inverse map: local length of a world vector of
     /// components 1, rounded upward.
     largest_row: f64,
@@ -276,38 +277,6 @@ impl EnclosedPacket {
         }
     }
 
-    pub fn first_hits(&self, instructions: Instructions, packet: &Packet) -> Answers {
-        let mut answers = Answers::default();
-        for lane in each(packet.active) {
-            let ray = packet.ray(lane);
-            // Up to 2³ roundings of the largest coordinate on the way to the point of a hit (distance,
-            // product, sum, map), and as many on the way back.
-            let extent = ray.origin.abs().max_element();
-            let shift = 16.0 * packet.roundoff * extent * self.largest_row;
-            let leaving = packet.leaving >> lane & 1 == 1;
-            let searching = Searching {
-                instructions,
-                method: self.method,
-                bound: WORK_BOUND,
-                leaving: leaving.then_some(shift),
-            };
-            let bit = 1 << lane;
-            match self.first_hit(&ray, [packet.t_min[lane], packet.t_max[lane]], &searching) {
-                Outcome::Undecided => {}
-                Outcome::Absent => answers.absent |= bit,
-                Outcome::Found(root) => {
-                    let [low, high] = root.enclosure;
-                    answers.found |= bit;
-                    answers.t[lane] = low + 0.5 * (high - low);
-                    [answers.low[lane], answers.high[lane]] = [low, high];
-                    answers.multiplicity[lane] = root.multiplicity.unwrap_or(0);
-                    answers.tiers[lane] = Tier::Double;
-                }
-            }
-        }
-        answers
-    }
-
     /// The first hit of a world ray, t in units of its direction.
     pub fn first_hit(&self, ray: &Ray, limits: [f64; 2], searching: &Searching) -> Outcome {
         let scaled = ScaledRay::new(ray);
@@ -329,6 +298,67 @@ impl EnclosedPacket {
             }
             other => other,
         }
+    }
+}
+
+impl Prover for EnclosedPacket {
+    fn first_hits(&self, packet: &Packet, _sharp: bool, workspace: &mut Workspace) -> Answers {
+        let mut answers = Answers::default();
+        for lane in each(packet.active) {
+            let ray = packet.ray(lane);
+            // Up to 2³ roundings of the largest coordinate on the way to the point of a hit (distance,
+            // product, sum, map), and as many on the way back.
+            let extent = ray.origin.abs().max_element();
+            let shift = 16.0 * packet.roundoff * extent * self.largest_row;
+            let leaving = packet.leaving >> lane & 1 == 1;
+            let searching = Searching {
+                instructions: workspace.instructions,
+                method: self.method,
+                bound: WORK_BOUND,
+                leaving: leaving.then_some(shift),
+            };
+            let bit = 1 << lane;
+            match self.first_hit(&ray, [packet.t_min[lane], packet.t_max[lane]], &searching) {
+                Outcome::Undecided => {}
+                Outcome::Absent => answers.absent |= bit,
+                Outcome::Found(root) => {
+                    let [low, high] = root.enclosure;
+                    answers.found |= bit;
+                    answers.t[lane] = low + 0.5 * (high - low);
+                    [answers.low[lane], answers.high[lane]] = [low, high];
+                    answers.multiplicity[lane] = root.multiplicity.unwrap_or(0);
+                    answers.tiers[lane] = Tier::Double;
+                }
+            }
+        }
+        answers
+    }
+}
+
+/// Interval subdivision.
+pub struct Interval;
+
+impl RootFinder for Interval {
+    const NAME: &'static str = "interval";
+    const WORDS: &'static str =
+        "interval enclosures in lanes of f64, cut until each answer is proved";
+
+    fn place(implicit: &Implicit, ladder: &Ladder) -> Finder {
+        let placed = EnclosedPacket::new(implicit, ladder, Method::Subdivision);
+        Finder::proved(FinderChoice::Interval, placed)
+    }
+}
+
+/// Sphere tracing.
+pub struct SphereTrace;
+
+impl RootFinder for SphereTrace {
+    const NAME: &'static str = "sphere-trace";
+    const WORDS: &'static str = "steps as long as a proved Lipschitz bound allows";
+
+    fn place(implicit: &Implicit, ladder: &Ladder) -> Finder {
+        let placed = EnclosedPacket::new(implicit, ladder, Method::Spheres);
+        Finder::proved(FinderChoice::SphereTrace, placed)
     }
 }
 

@@ -5,6 +5,7 @@ pub mod baseline;
 pub mod certified;
 pub mod clip;
 pub mod enclosed;
+pub mod finder;
 pub mod placed;
 
 use std::sync::Arc;
@@ -12,6 +13,8 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::field::expression::Expression;
+
+pub use finder::FinderChoice;
 
 /// The zeros of a field within a box.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,35 +30,4 @@ pub struct Implicit {
     pub finder: FinderChoice,
     /// Steps along the clipped ray, for [`FinderChoice::SignChange`].
     pub steps: u32,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FinderChoice {
-    #[default]
-    Auto,
-    /// See [`baseline`].
-    SignChange,
-    /// Steps as long as a proved Lipschitz bound allows.
-    SphereTrace,
-    /// Interval enclosures, for any field.
-    Interval,
-    /// Isolation of the roots of a polynomial along the ray.
-    Polynomial,
-}
-
-impl FinderChoice {
-    /// By name in scene files.
-    pub const NAMES: &'static [(&'static str, Self)] = &[
-        ("auto", Self::Auto),
-        ("sign-change", Self::SignChange),
-        ("sphere-trace", Self::SphereTrace),
-        ("interval", Self::Interval),
-        ("polynomial", Self::Polynomial),
-    ];
-
-    /// Its name in scene files.
-    pub fn name(self) -> &'static str {
-        let known = Self::NAMES.iter().find(|(_, finder)| *finder == self);
-        known.map_or("auto", |(name, _)| name)
-    }
 }

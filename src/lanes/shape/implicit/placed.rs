@@ -2,83 +2,13 @@
 
 pub use super::baseline::ImplicitHit;
 use super::baseline::SteppingFinder;
-use super::certified::{Answers, Certified, Effort, Packet, Workspace};
-use super::enclosed::{EnclosedPacket, Method};
+use super::certified::{Packet, Workspace};
+use super::finder::Finder;
 use crate::math::affine::Affine;
-use crate::shape::implicit::{FinderChoice, Implicit};
-use crate::shape::ladder::Ladder;
+use crate::shape::implicit::Implicit;
 use crate::shape::{Query, Ray, SingularMatrix, Tally};
 
 use glam::DVec3;
-
-#[derive(Debug, Clone)]
-pub enum Finder {
-    SignChange,
-    Polynomial {
-        certified: Box<Certified>,
-        /// Whether what double-double leaves undecided is decided exactly.
-        exact: bool,
-    },
-    /// Interval subdivision, or sphere tracing with a proved bound.
-    Enclosed(Box<EnclosedPacket>),
-}
-
-impl Finder {
-    /// The finder that a surface asks for; `auto` is certified isolation for polynomials, and
-    /// interval subdivision for other fields.
-    pub fn new(implicit: &Implicit, ladder: &Ladder) -> Self {
-        let enclosed = |method| {
-            let placed = EnclosedPacket::new(implicit, ladder, method);
-            Self::Enclosed(Box::new(placed))
-        };
-        let exact = match implicit.finder {
-            FinderChoice::Auto => true,
-            FinderChoice::Polynomial => false,
-            FinderChoice::SignChange => return Self::SignChange,
-            FinderChoice::Interval => return enclosed(Method::Subdivision),
-            FinderChoice::SphereTrace => return enclosed(Method::Spheres),
-        };
-        match Certified::new(&implicit.field.tape, implicit.inside, ladder) {
-            Some(certified) => Self::Polynomial {
-                certified: Box::new(certified),
-                exact,
-            },
-            None => enclosed(Method::Subdivision),
-        }
-    }
-
-    /// The first hits of a packet; `None` from [`Self::SignChange`], which proves nothing. `sharp` asks
-    /// for narrow enclosures at a higher cost.
-    pub fn first_hits(
-        &self,
-        packet: &Packet,
-        sharp: bool,
-        workspace: &mut Workspace,
-    ) -> Option<Answers> {
-        match self {
-            Self::SignChange => None,
-            Self::Polynomial { certified, exact } => {
-                let effort = Effort {
-                    sharp,
-                    exact: *exact,
-                };
-                Some(certified.first_hits(packet, effort, workspace))
-            }
-            Self::Enclosed(enclosed) => Some(enclosed.first_hits(workspace.instructions, packet)),
-        }
-    }
-
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::SignChange => "sign-change",
-            Self::Polynomial { .. } => "polynomial",
-            Self::Enclosed(enclosed) => match enclosed.method {
-                Method::Subdivision => "interval",
-                Method::Spheres => "sphere-trace",
-            },
-        }
-    }
-}
 
 #[derive(Debug, Clone)]
 pub struct PlacedImplicit {
@@ -138,12 +68,12 @@ impl PlacedImplicit {
         let mut packet = Packet::default();
         let limits = [query.t_min, query.t_max];
         packet.set(0, query.ray.origin, query.ray.direction, limits);
-        let answers = self.finder.first_hits(&packet, true, workspace);
-        let Some(answers) = answers else {
+        let Some(prover) = &self.finder.prover else {
             tally.uncertified += 1;
             let stepped = self.stepping.first_hit(query);
             return stepped.map_or(ImplicitAnswer::Absent, ImplicitAnswer::Found);
         };
+        let answers = prover.first_hits(&packet, true, workspace);
         let decided = (answers.found | answers.absent) & 1 == 1;
         tally.count(decided.then_some(answers.tiers[0]));
         if answers.found & 1 == 1 {
@@ -170,13 +100,10 @@ impl PlacedImplicit {
     fn normal(&self, ray: &Ray, t: f64, enclosure: [f64; 2]) -> Option<DVec3> {
         let within = (t - enclosure[0]).max(enclosure[1] - t);
         let certain = self.stepping.certain_normal(ray, t, within);
-        let exact = || match &self.finder {
-            Finder::Polynomial { certified, .. } => {
-                let tape = self.stepping.tape();
-                let gradient = certified.gradient_direction(tape, ray, enclosure)?;
-                self.stepping.world_normal(gradient)
-            }
-            _ => None,
+        let exact = || {
+            let (tape, prover) = (self.stepping.tape(), self.finder.prover.as_ref()?);
+            let gradient = prover.gradient_direction(tape, ray, enclosure)?;
+            self.stepping.world_normal(gradient)
         };
         certain
             .or_else(exact)

@@ -19,7 +19,7 @@ use crate::shape::Tally;
 use crate::shape::hierarchy::{Bounds, OuterBox};
 use crate::shape::implicit::Implicit;
 use crate::shape::implicit::certified::{Packet, WIDTH, Workspace};
-use crate::shape::implicit::placed::Finder;
+use crate::shape::implicit::finder::{Finder, Prover};
 use crate::shape::ladder::Ladder;
 
 use super::LaneRay;
@@ -116,15 +116,15 @@ impl<T: Scalar> LaneImplicit<T> {
             if !active.any() {
                 return (limit, active);
             }
-            let (t, found) = match &self.finder {
-                Finder::SignChange => {
+            let (t, found) = match &self.finder.prover {
+                None => {
                     tally.uncertified += u64::from(active.bits().count_ones());
                     self.first_change(l, ray, start, active)
                 }
-                finder => {
+                Some(prover) => {
                     let rays = PacketRays::new(l, ray);
                     let bits = [active.bits(), start.on.bits()];
-                    let (t, found) = rays.ask(l.instructions(), finder, bits, L::COUNT, tally);
+                    let (t, found) = rays.ask(l.instructions(), &**prover, bits, L::COUNT, tally);
                     (l.load(&t), l.mask_from_bits(found))
                 }
             };
@@ -292,7 +292,7 @@ impl<T: Scalar> PacketRays<T> {
     fn ask(
         &self,
         instructions: Instructions,
-        finder: &Finder,
+        prover: &dyn Prover,
         [active, leaving]: [u32; 2],
         count: usize,
         tally: &mut Tally,
@@ -317,9 +317,8 @@ impl<T: Scalar> PacketRays<T> {
             }
             let answers = WORKSPACE.with_borrow_mut(|workspace| {
                 workspace.instructions = instructions;
-                finder.first_hits(&packet, false, workspace)
+                prover.first_hits(&packet, false, workspace)
             });
-            let answers = answers.unwrap_or_default();
             let decided = answers.found | answers.absent;
             for lane in (0..WIDTH).filter(|lane| packet.active >> lane & 1 == 1) {
                 t[base + lane] = T::from_f64(answers.t[lane]);
