@@ -154,29 +154,19 @@ impl Row {
     }
 
     /// The columns in the order in which they are written.
-    fn columns(&mut self) -> [(&'static str, Cell<'_>); 24] {
+    fn columns(&mut self) -> Vec<(&'static str, Cell<'_>)> {
         use Cell::{Count, Real, Text};
-        let [
-            spp,
-            sampler,
-            precision,
-            wavelengths,
-            max_depth,
-            finder,
-            scrambles,
-        ] = self.values.each_mut();
-        [
+        let mut columns = vec![
             ("renderer", Text(&mut self.renderer)),
             ("scene", Text(&mut self.scene)),
             ("panel", Text(&mut self.panel)),
             ("settings", Text(&mut self.settings)),
-            ("sampler", Text(sampler)),
-            ("precision", Text(precision)),
-            ("wavelengths", Text(wavelengths)),
-            ("max_depth", Text(max_depth)),
-            ("finder", Text(finder)),
-            ("scrambles", Text(scrambles)),
-            ("spp", Text(spp)),
+        ];
+        let axes = Key::ALL.map(Key::column).into_iter();
+        columns.extend(axes.zip(self.values.iter_mut().map(Text)));
+        // The number of samples, the first of the axes, comes after the others.
+        columns[4..].rotate_left(1);
+        columns.extend([
             ("replicate", Count(&mut self.replicate)),
             ("seed", Count(&mut self.seed)),
             ("threads", Count(&mut self.threads)),
@@ -190,21 +180,24 @@ impl Row {
             ("reference", Text(&mut self.reference)),
             ("reference_rmse", Real(&mut self.reference_rmse)),
             ("reference_relmse", Real(&mut self.reference_relmse)),
-        ]
+        ]);
+        columns
     }
 
     /// The row as a line of CSV, its end included.
     pub fn line(&self) -> String {
-        line(self.clone().columns().map(|(_, cell)| cell.text()))
+        let mut row = self.clone();
+        line(row.columns().into_iter().map(|(_, cell)| cell.text()))
     }
 }
 
 /// The heading as a line of CSV.
 pub fn heading() -> String {
-    line(Row::default().columns().map(|(name, _)| name.to_owned()))
+    let mut row = Row::default();
+    line(row.columns().into_iter().map(|(name, _)| name.to_owned()))
 }
 
-fn line(cells: [String; 24]) -> String {
+fn line(cells: impl Iterator<Item = String>) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     // A vector takes everything.
     let _ = writer.write_record(cells);

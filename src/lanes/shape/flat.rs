@@ -39,15 +39,9 @@ pub trait Flat {
     /// tell.
     fn covers<N: Number>(ray: &LocalRay<N>, t: &Fraction<N>) -> Option<bool>;
 
-    /// Whether the point (x/z, y/z), with each of x, y and z > 0 within `margin` together, is
-    /// certainly inside and certainly outside.
-    fn contains<L: Lanes>(
-        l: L,
-        x: L::Real,
-        y: L::Real,
-        z: L::Real,
-        margin: L::Real,
-    ) -> (L::Mask, L::Mask);
+    /// Whether the point (x/z, y/z) of `at` = (x, y, z), with each of x, y and z > 0 within `margin`
+    /// together, is certainly inside and certainly outside.
+    fn contains<L: Lanes>(l: L, at: Vec3<L::Real>, margin: L::Real) -> (L::Mask, L::Mask);
 }
 
 impl<F: Flat> Canonical for F {
@@ -90,8 +84,7 @@ impl<F: Flat> Canonical for F {
         let margin = ray.extent.mul_add(l.splat(factor), l.splat(constant));
         let x = ox.mul_add(dz, -(oz * dx));
         let y = oy.mul_add(dz, -(oz * dy));
-        let slope = dz.abs();
-        let (inside, outside) = F::contains(l, x, y, slope, margin);
+        let (inside, outside) = F::contains(l, Vec3::new(x, y, dz.abs()), margin);
         let reciprocal = l.real(1.0) / dz;
         let t = -(oz * reciprocal);
         let distance = t.abs();

@@ -7,6 +7,7 @@ use super::kind::Emitter;
 use super::line::{Fraction, LocalRay};
 use crate::math::lanes::{Lanes, Real};
 use crate::math::number::Number;
+use crate::math::vec3::Vec3;
 
 pub struct Plane;
 
@@ -31,13 +32,7 @@ impl Flat for Plane {
     }
 
     #[inline(always)]
-    fn contains<L: Lanes>(
-        l: L,
-        _x: L::Real,
-        _y: L::Real,
-        z: L::Real,
-        margin: L::Real,
-    ) -> (L::Mask, L::Mask) {
-        (z.gt(margin), l.mask(false))
+    fn contains<L: Lanes>(l: L, at: Vec3<L::Real>, margin: L::Real) -> (L::Mask, L::Mask) {
+        (at.z.gt(margin), l.mask(false))
     }
 }

@@ -7,6 +7,7 @@ use super::kind::{Emitter, Length};
 use super::line::{Fraction, LocalRay};
 use crate::math::lanes::{Lanes, Real};
 use crate::math::number::Number;
+use crate::math::vec3::Vec3;
 
 pub struct Rectangle;
 
@@ -30,14 +31,8 @@ impl Flat for Rectangle {
     }
 
     #[inline(always)]
-    fn contains<L: Lanes>(
-        _l: L,
-        x: L::Real,
-        y: L::Real,
-        z: L::Real,
-        margin: L::Real,
-    ) -> (L::Mask, L::Mask) {
-        let depth = z - x.abs().max(y.abs());
+    fn contains<L: Lanes>(_: L, at: Vec3<L::Real>, margin: L::Real) -> (L::Mask, L::Mask) {
+        let depth = at.z - at.x.abs().max(at.y.abs());
         (depth.gt(margin), depth.lt(-margin))
     }
 }
