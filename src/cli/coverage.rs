@@ -3,9 +3,10 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use etalon::inside::study::StudyError;
 use etalon::inside::study::choice::stem;
 use etalon::inside::study::coverage::{Count, Coverage, SURVEY, Survey, cover};
-use etalon::inside::study::subject::{Subject, SubjectError};
+use etalon::inside::study::subject::Subject;
 use etalon::{Instructions, Overrides, Scene};
 
 use super::{Answer, Failure, args, say, scene_words, threads, write};
@@ -52,7 +53,7 @@ pub fn run(arguments: &args::Coverage) -> Result<Answer, Failure> {
 /// Tests one scene with each sampler.
 fn test(arguments: &args::Coverage, path: &Path) -> Result<Vec<(String, Coverage)>, Failure> {
     let failed = |error| match error {
-        SubjectError::Scene(error) => scene_words(&error),
+        StudyError::Scene(error) => scene_words(&error),
         other => other.to_string(),
     };
     let mut overrides = Overrides {

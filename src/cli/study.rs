@@ -4,11 +4,10 @@ use std::path::{Path, PathBuf};
 
 use etalon::inside::chart::{self, Curve, Figure, Key, curves, figures};
 use etalon::inside::study::budget::{BudgetError, Fits};
-use etalon::inside::study::grid::GridError;
 use etalon::inside::study::own::MARGIN;
 use etalon::inside::study::reference::ReferenceError;
 use etalon::inside::study::run::{Request, Study, run as run_study};
-use etalon::inside::study::subject::{Subject, SubjectError};
+use etalon::inside::study::subject::Subject;
 use etalon::inside::study::{StudyError, choice, report};
 
 use super::progress::{Studying, listen};
@@ -36,8 +35,8 @@ fn words(error: &StudyError) -> String {
         StudyError::Other { .. } => {
             format!("{error}; choose another directory with -o, or remove that one")
         }
-        StudyError::Subject(SubjectError::Scene(scene)) => scene_words(scene),
-        StudyError::Grid(GridError::Twice(_)) => {
+        StudyError::Scene(scene) => scene_words(scene),
+        StudyError::Twice(_) => {
             format!("{error}: put all its values into one --over")
         }
         StudyError::Reference(ReferenceError::NoVariance(_)) => {

@@ -142,7 +142,7 @@ fn committed(scene: &Path) -> Vec<PathBuf> {
 /// paths that the points have.
 ///
 /// # Errors
-/// [`StudyError::Subject`] where the scene is not valid with these settings.
+/// [`StudyError`] where the scene is not valid with these settings.
 pub fn own<'a>(
     subject: &Subject,
     points: impl Iterator<Item = &'a Ready> + Clone,
@@ -169,5 +169,5 @@ pub fn own<'a>(
         overrides.set.push(image("max_depth", depth.to_string()));
     }
     let name = format!("{sampler}, precision and finder auto");
-    Ok(subject.ready(&overrides, name)?)
+    subject.ready(&overrides, name)
 }

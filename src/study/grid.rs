@@ -1,5 +1,6 @@
 //! The points of a study: every combination of the values of its axes.
 
+use super::StudyError;
 use super::axis::Axis;
 use crate::chart::Key;
 
@@ -14,13 +15,6 @@ pub struct Grid {
 /// The values of the axes at a point.
 pub type Choices = Vec<(Key, String)>;
 
-/// What is wrong with a grid.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum GridError {
-    #[error("the axis {0} is given twice")]
-    Twice(&'static str),
-}
-
 /// Keys that can be the abscissa, the first of them preferred.
 const ABSCISSAE: [Key; 4] = [Key::Spp, Key::MaxDepth, Key::Scrambles, Key::Wavelengths];
 
@@ -28,12 +22,12 @@ impl Grid {
     /// The grid over these axes; `None` where none of them can be the abscissa.
     ///
     /// # Errors
-    /// [`GridError::Twice`].
-    pub fn new(axes: &[Axis]) -> Result<Option<Self>, GridError> {
+    /// [`StudyError::Twice`].
+    pub fn new(axes: &[Axis]) -> Result<Option<Self>, StudyError> {
         let mut axes = axes.to_vec();
         let twice = |(i, axis): (usize, &Axis)| axes[..i].iter().any(|a| a.key == axis.key);
         if let Some(at) = axes.iter().enumerate().position(twice) {
-            return Err(GridError::Twice(axes[at].key.column()));
+            return Err(StudyError::Twice(axes[at].key.column()));
         }
         let abscissa = ABSCISSAE
             .into_iter()

@@ -20,6 +20,9 @@ pub mod work;
 
 use std::path::{Path, PathBuf};
 
+use crate::plan::PlanError;
+use crate::scene::SceneError;
+
 /// Why a study cannot be carried out.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
@@ -57,9 +60,15 @@ pub enum StudyError {
         wanted: String,
     },
     #[error(transparent)]
-    Subject(#[from] subject::SubjectError),
-    #[error(transparent)]
-    Grid(#[from] grid::GridError),
+    Scene(#[from] SceneError),
+    #[error("at {at}: {reason}")]
+    Plan {
+        /// The settings of the point that cannot be planned.
+        at: String,
+        reason: PlanError,
+    },
+    #[error("the axis {0} is given twice")]
+    Twice(&'static str),
     #[error(transparent)]
     Reference(#[from] reference::ReferenceError),
     #[error(transparent)]

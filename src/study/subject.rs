@@ -4,12 +4,13 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use super::StudyError;
 use super::grid::Choices;
 use crate::chart::Key;
-use crate::plan::{Plan, PlanError};
+use crate::plan::Plan;
 use crate::render::seeds::seed;
 use crate::render::{Instructions, Progress, Rendered, Request, render};
-use crate::scene::{self, Overrides, Scene, SceneError};
+use crate::scene::{self, Overrides, Scene};
 
 /// The scene that is studied, and the instruction set that renders it.
 #[derive(Debug, Clone)]
@@ -19,19 +20,6 @@ pub struct Subject {
     /// Settings that replace the file's at every point.
     pub overrides: Overrides,
     pub instructions: Instructions,
-}
-
-/// Why a point cannot be rendered.
-#[derive(Debug, thiserror::Error)]
-pub enum SubjectError {
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    #[error("at {at}: {reason}")]
-    Plan {
-        /// The settings of the point.
-        at: String,
-        reason: PlanError,
-    },
 }
 
 /// A scene ready to be rendered with any seed.
@@ -55,8 +43,8 @@ impl Subject {
     /// The scene at a point.
     ///
     /// # Errors
-    /// [`SubjectError`] where it is not valid or cannot be planned.
-    pub fn at(&self, choices: &Choices) -> Result<Ready, SubjectError> {
+    /// [`StudyError`] where it is not valid or cannot be planned.
+    pub fn at(&self, choices: &Choices) -> Result<Ready, StudyError> {
         let mut overrides = self.overrides.clone();
         for (key, value) in choices {
             let key = match key {
@@ -80,10 +68,10 @@ impl Subject {
     /// The scene with these overrides instead.
     ///
     /// # Errors
-    /// [`SubjectError`] where it is not valid or cannot be planned.
-    pub fn ready(&self, overrides: &Overrides, name: String) -> Result<Ready, SubjectError> {
+    /// [`StudyError`] where it is not valid or cannot be planned.
+    pub fn ready(&self, overrides: &Overrides, name: String) -> Result<Ready, StudyError> {
         let scene = scene::load(&self.path, overrides)?;
-        let plan = Plan::new(&scene, false).map_err(|reason| SubjectError::Plan {
+        let plan = Plan::new(&scene, false).map_err(|reason| StudyError::Plan {
             at: name.clone(),
             reason,
         })?;

@@ -53,14 +53,16 @@ impl<'a> Work<'a> {
     /// Loads and plans all points.
     ///
     /// # Errors
-    /// [`StudyError::Subject`] where one is not valid.
+    /// [`StudyError`] where one is not valid.
     pub fn new(request: &'a Request, grid: Grid, found: &Found) -> Result<Self, StudyError> {
         let point = |choices| {
             let ready = request.subject.at(choices)?;
             let values = ready.values(choices);
-            Ok::<_, StudyError>(Point { ready, values })
+            Ok(Point { ready, values })
         };
-        let points: Vec<Point> = grid.points().iter().map(point).collect::<Result<_, _>>()?;
+        let points = grid.points();
+        let points = points.iter().map(point);
+        let points: Vec<Point> = points.collect::<Result<_, StudyError>>()?;
         let own = match found.reference {
             Some(_) => None,
             None => {

@@ -113,9 +113,10 @@ impl<L: DoubleLanes, W: Word<L>> Local<L, W> {
         let fastest = d[0].abs().max(d[1].abs()).max(d[2].abs());
         // No point of the box is farther along the line; the factor 2 pays for the margin.
         let farthest = (reach + reach) / fastest;
-        let moved = self
-            .extent
-            .mul_add(l.real(inverse.origin_error), l.real(inverse.offset_error));
+        let moved = self.extent.mul_add(
+            l.real(inverse.direction_error),
+            l.real(inverse.offset_error),
+        );
         let turned = self.length * l.real(inverse.direction_error);
         let map_error = farthest.mul_add(turned, moved);
         // Where a face is met, t is rounded three times (difference, reciprocal, product), which moves the

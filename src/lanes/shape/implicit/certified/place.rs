@@ -37,11 +37,10 @@ pub struct FactorField {
 pub(super) struct Inverse {
     /// Entries of the 3×4 matrix, each as a sum of two f64.
     pub rows: [[[f64; 2]; 4]; 3],
-    /// Error of a local direction's component, for a direction whose largest component is 1.
+    /// Error of a local direction's component, for a direction whose largest component is 1; and of
+    /// a local origin's, likewise …
     pub direction_error: f64,
-    /// Error of a local origin's component, for an origin whose largest component is 1 …
-    pub origin_error: f64,
-    /// … and the part of it that does not depend on the origin.
+    /// … but for the part of it that does not depend on the origin.
     pub offset_error: f64,
     /// Largest sum of a row's magnitudes: local length of a world vector of components 1.
     pub largest_row: f64,
@@ -98,7 +97,13 @@ impl Certified {
             .collect();
         Some(Self {
             factors,
-            inverse: [Inverse::plain(ladder), Inverse::pair(ladder)],
+            inverse: [
+                // 6u, and half a unit for rounding the bounds: see [`crate::shape::lanes`].
+                Inverse::new(ladder, 6.5 * f64::EPSILON / 2.0, |_| 0.0, 1),
+                // Three products and three sums are each off by a unit, two more pay for evaluating the
+                // bound; and the entries' own errors.
+                Inverse::new(ladder, 8.0 * PAIR.unit, DoubleDouble::error, 2),
+            ],
             ladder: ladder.clone(),
             clip: clip.map(|corner| corner.to_array()),
             outer: outer.map(|corner| corner.to_array()),
@@ -156,17 +161,6 @@ impl Inverse {
         })
     }
 
-    fn plain(ladder: &Ladder) -> Self {
-        // 6u, and half a unit for rounding the bounds: see [`crate::shape::lanes`].
-        Self::new(ladder, 6.5 * f64::EPSILON / 2.0, |_| 0.0, 1)
-    }
-
-    fn pair(ladder: &Ladder) -> Self {
-        // Three products and three sums are each off by a unit, two more pay for evaluating the bound; and
-        // the entries' own errors.
-        Self::new(ladder, 8.0 * PAIR.unit, DoubleDouble::error, 2)
-    }
-
     fn new(ladder: &Ladder, unit: f64, own: impl Fn(&DoubleDouble) -> f64, parts: usize) -> Self {
         let entries = ladder.double_double.inverse();
         let rows = entries.each_ref().map(|row| {
@@ -182,7 +176,6 @@ impl Inverse {
                 rows,
                 largest_row,
                 direction_error: 0.0,
-                origin_error: 0.0,
                 offset_error: 0.0,
             };
         }
@@ -194,12 +187,10 @@ impl Inverse {
         };
         let largest =
             |f: &dyn Fn(&[DoubleDouble; 4]) -> f64| entries.iter().map(f).fold(0.0, f64::max);
-        let direction_error = largest(&|row| bound(&row[..3]));
         Self {
             rows,
             largest_row,
-            direction_error,
-            origin_error: direction_error,
+            direction_error: largest(&|row| bound(&row[..3])),
             offset_error: largest(&|row| bound(&row[3..])),
         }
     }
