@@ -21,7 +21,7 @@ use crate::support::from_zero;
 fn first_hit(field: &EnclosedField, half: f64, query: &Query, searching: &Searching) -> Outcome {
     let ladder = Ladder::new(&Affine::IDENTITY).unwrap();
     let scaled = ScaledRay::new(&query.ray);
-    let unit = 2f64.powi(scaled.exponent());
+    let unit = 2f64.powi(scaled.exponent);
     let local = ladder.double_double.local(&scaled);
     let inside = [DVec3::splat(-half), DVec3::splat(half)];
     let limits = [query.t_min * unit, f64::MAX];

@@ -52,7 +52,7 @@ impl Record {
         self.asked += 1;
         let truth = crossings(&case.placed, &answer.ray);
         let what = || {
-            let (kind, to_world) = (case.placed.kind(), case.placed.to_world());
+            let (kind, to_world) = (case.placed.kind, &case.placed.to_world);
             format!("{kind:?} {to_world:?}\n  {answer:?}\n  {truth:?}")
         };
         if answer.hit && answer.miss {
@@ -193,7 +193,7 @@ fn lanes_never_contradict_the_ladder_on_nasty_rays() {
     for precision in PRECISIONS {
         let cases = nasty_cases(precision, 0x0050_facd, 12_000);
         for &kind in KINDS {
-            let mine = cases.iter().filter(|case| case.placed.kind() == kind);
+            let mine = cases.iter().filter(|case| case.placed.kind == kind);
             let mine: Vec<Case> = mine.cloned().collect();
             let record = Record::check_all(&mine, precision);
             record.assert_sound(&format!("{kind:?}, {precision:?}"));

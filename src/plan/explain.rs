@@ -272,7 +272,7 @@ fn intersection(scene: &Scene, plan: &Plan) -> String {
     }
     let finders: Vec<FinderChoice> = of_model!(&plan.tables, model => {
         let implicits = model.implicits.iter();
-        implicits.map(|(_, implicit)| implicit.finder().kind).collect()
+        implicits.map(|(_, implicit)| implicit.finder.kind).collect()
     });
     for kind in FinderChoice::ALL.iter().rev() {
         let count = finders.iter().filter(|finder| *finder == kind).count();

@@ -185,7 +185,7 @@ impl Tracer {
             let Traced::Implicit(implicit) = &self.objects[object as usize] else {
                 continue;
             };
-            let finder = implicit.finder().kind.name();
+            let finder = implicit.finder.kind.name();
             match implicit.first_hit(query, workspace, &mut decided.implicit) {
                 ImplicitAnswer::Absent => {}
                 ImplicitAnswer::Undecided => undecided = Some(finder),

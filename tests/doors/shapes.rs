@@ -40,9 +40,9 @@ impl<T: Scalar> Job<T> for Spans<'_> {
     fn run<L: Lanes<Scalar = T>>(self, l: L) -> Vec<RaySpan> {
         let mut spans = Vec::with_capacity(self.0.len());
         for (placed, ray) in self.0 {
-            let (kind, inverse) = (Some(placed.kind()), placed.ladder.inverse());
+            let (kind, inverse) = (Some(placed.kind), placed.ladder.inverse());
             let reach = ray.origin.abs().max_element();
-            let shape = LaneShape::new(kind, placed.to_world(), &inverse, reach);
+            let shape = LaneShape::new(kind, &placed.to_world, &inverse, reach);
             let (origin, direction) = (Vec3::splat(l, ray.origin), Vec3::splat(l, ray.direction));
             let ray = LaneRay::<L>::new(l, origin, direction);
             let span = shape.span(l, &ray, l.mask(true), l.real(f64::INFINITY));
@@ -109,7 +109,7 @@ pub fn crossings(placed: &Placed, ray: &Ray) -> Option<[Hit; 2]> {
         return None;
     }
     let ray = ScaledRay::new(ray);
-    let (span, tier) = placed.ladder.climb(&ray, &Through(placed.kind()))?;
+    let (span, tier) = placed.ladder.climb(&ray, &Through(placed.kind))?;
     let Span { near, far } = span?;
     Some([
         placed.hit(&near, &ray, tier)?,

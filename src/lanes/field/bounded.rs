@@ -47,7 +47,7 @@ pub fn gradient(field: &Field, point: DVec3, blur: f64) -> (DVec3, f64) {
         point,
         blur,
     };
-    let found = field.tape().evaluate(&Gradients(&numbers), &mut Vec::new());
+    let found = field.tape.evaluate(&Gradients(&numbers), &mut Vec::new());
     let Some(WithGradient { gradient, .. }) = found else {
         return (DVec3::NAN, f64::INFINITY);
     };

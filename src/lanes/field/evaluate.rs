@@ -15,7 +15,7 @@ use crate::math::vec3::Vec3;
 /// A tape with its constants rounded once.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field<T = f64> {
-    tape: Tape,
+    pub tape: Tape,
     /// By index on the tape, each the nearest of its type.
     pub(super) constants: Vec<T>,
 }
@@ -78,10 +78,6 @@ impl<T: Scalar> Field<T> {
 }
 
 impl Field {
-    pub fn tape(&self) -> &Tape {
-        &self.tape
-    }
-
     /// f(p); NaN where it is undefined.
     pub fn value(&self, p: DVec3) -> f64 {
         let [value] = self.values(One, [Vec3::splat(One, p)], &mut Vec::new());

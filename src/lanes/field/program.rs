@@ -67,9 +67,10 @@ pub enum Step {
 /// A field that is polynomial, ready for lines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Program {
-    steps: Vec<Step>,
-    result: Form,
-    rows: usize,
+    pub steps: Vec<Step>,
+    pub result: Form,
+    /// How many coefficients the steps need room for.
+    pub rows: usize,
 }
 
 impl Program {
@@ -99,19 +100,6 @@ impl Program {
             result,
             rows,
         })
-    }
-
-    pub fn steps(&self) -> &[Step] {
-        &self.steps
-    }
-
-    pub fn result(&self) -> Form {
-        self.result
-    }
-
-    /// How many coefficients the operations need room for.
-    pub fn rows(&self) -> usize {
-        self.rows
     }
 
     /// Coefficients of a positive multiple of the field, lowest power first and none above the

@@ -33,7 +33,8 @@ pub struct Frame<N> {
 #[derive(Debug, Clone, Copy)]
 pub struct ScaledRay {
     ray: Ray,
-    exponent: i32,
+    /// The power of two by which the direction was divided.
+    pub exponent: i32,
 }
 
 impl ScaledRay {
@@ -47,11 +48,6 @@ impl ScaledRay {
     /// Converts t to units of the scaled direction.
     pub fn scaled_t<N: Number>(&self, t: f64) -> N {
         N::scaled(t, self.exponent)
-    }
-
-    /// The power of two by which the direction was divided.
-    pub fn exponent(&self) -> i32 {
-        self.exponent
     }
 
     pub fn origin<N: Number>(&self) -> [N; 3] {

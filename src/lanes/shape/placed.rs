@@ -20,8 +20,8 @@ pub struct SingularMatrix;
 /// definition, and its inverse is known to every precision.
 #[derive(Debug, Clone)]
 pub struct Placed {
-    kind: ShapeKind,
-    to_world: Affine,
+    pub kind: ShapeKind,
+    pub to_world: Affine,
     /// The map between world and object in each arithmetic.
     pub ladder: Ladder,
 }
@@ -37,14 +37,6 @@ impl Placed {
             to_world: *to_world,
             ladder: Ladder::new(to_world)?,
         })
-    }
-
-    pub fn kind(&self) -> ShapeKind {
-        self.kind
-    }
-
-    pub fn to_world(&self) -> &Affine {
-        &self.to_world
     }
 
     /// The first crossing of the ray with the surface, entering or leaving, with t > `t_min`, or

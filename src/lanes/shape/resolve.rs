@@ -77,23 +77,21 @@ impl Resolver {
             return Some(Resolved {
                 t: 0.0,
                 object: departure.object,
-                part: placed
-                    .kind()
-                    .part(placed.ladder.inverse().point(ray.origin)),
+                part: placed.kind.part(placed.ladder.inverse().point(ray.origin)),
             });
         }
         let (index, hit) = found?;
         Some(Resolved {
             t: hit.t,
             object: self.objects[index],
-            part: self.placed[index].kind().part(hit.local),
+            part: self.placed[index].kind.part(hit.local),
         })
     }
 
     /// The closed shape that a ray enters from a point of its surface.
     fn entered(&self, departure: Departure) -> Option<usize> {
         let index = self.objects.binary_search(&departure.object).ok()?;
-        (departure.inward && !self.placed[index].kind().is_flat()).then_some(index)
+        (departure.inward && !self.placed[index].kind.is_flat()).then_some(index)
     }
 
     /// Where that ray leaves the shape, at t ≥ 0. Nowhere if its start is rounded to a place outside from
@@ -142,7 +140,7 @@ impl Resolver {
             Start::Free
         } else if departure.inward {
             Start::OnSurfaceInward
-        } else if self.placed[index].kind().is_convex() {
+        } else if self.placed[index].kind.is_convex() {
             Start::Excluded
         } else {
             Start::Free

@@ -83,7 +83,7 @@ pub fn hit<N: Number>(
         && within(&normal, SHARP)
         && within(&point, SHARP * rounded(&point).abs().max_element());
     sharp.then(|| Hit {
-        t: t.to_f64() * power_of_two(-ray.exponent()),
+        t: t.to_f64() * power_of_two(-ray.exponent),
         point: rounded(&point),
         normal: rounded(&normal),
         local: rounded(&local),

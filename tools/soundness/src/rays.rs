@@ -169,7 +169,7 @@ impl Case<'_> {
         };
         let constants = RefCell::new(constants);
         // t is in units of the scaled direction.
-        let unit = 2f64.powi(ScaledRay::new(ray).exponent());
+        let unit = 2f64.powi(ScaledRay::new(ray).exponent);
         let direction = ray.direction / unit;
         let value = |t: f64| self.value(ray.origin, direction, t, &constants);
         let [near, far] = self.stretch(ray.origin, direction);

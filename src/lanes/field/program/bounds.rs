@@ -45,8 +45,8 @@ const INFLATION: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 
 /// Bounds of a field's Bernstein coefficients for lines whose ends lie within `reach` of 0 on each axis.
 pub fn bounds(program: &Program, reach: [f64; 3], rounding: Rounding) -> Bound {
-    let mut rows = vec![Bound::default(); program.rows()];
-    for step in program.steps() {
+    let mut rows = vec![Bound::default(); program.rows];
+    for step in &program.steps {
         match step {
             Step::Coordinate { axis, to } => {
                 let end = Bound {
@@ -92,7 +92,7 @@ pub fn bounds(program: &Program, reach: [f64; 3], rounding: Rounding) -> Bound {
             }
         }
     }
-    let result = program.result();
+    let result = program.result;
     let mut field = Bound::default();
     for i in 0..=result.degree {
         let binomial = binomial(result.degree, i);

@@ -8,7 +8,6 @@
 use glam::DVec3;
 
 use crate::field::evaluate::Field;
-use crate::field::tape::Tape;
 use crate::field::{bounded, normal};
 use crate::math::affine::Affine;
 use crate::math::double_double::DoubleDouble;
@@ -21,7 +20,7 @@ use crate::shape::{Query, Ray, SingularMatrix, Tier};
 
 #[derive(Debug, Clone)]
 pub struct SteppingFinder {
-    field: Field,
+    pub field: Field,
     inside: [DVec3; 2],
     steps: u32,
     pub ladder: Ladder,
@@ -80,7 +79,7 @@ impl SteppingFinder {
         let ray = ScaledRay::new(&query.ray);
         let line = self.local(&ray);
         // t is counted in units of the scaled direction, whose largest component is near 1.
-        let unit = power_of_two(ray.exponent());
+        let unit = power_of_two(ray.exponent);
         let limits = [query.t_min * unit, query.t_max * unit];
         let scaled_t = self.first_root(&line, limits, query.t_min == 0.0)?;
         let t = scaled_t / unit;
@@ -100,7 +99,7 @@ impl SteppingFinder {
     pub fn normal_at(&self, ray: &Ray, t: f64) -> Option<DVec3> {
         let ray = ScaledRay::new(ray);
         let line = self.local(&ray);
-        self.normal(line.at(t * power_of_two(ray.exponent())), line.direction)
+        self.normal(line.at(t * power_of_two(ray.exponent)), line.direction)
     }
 
     /// The unit outward normal, in the world, of a hit at t ± `within`, where f64 is certain of it.
@@ -112,15 +111,11 @@ impl SteppingFinder {
         let point = [0, 1, 2].map(|i| over(&line.origin[i].plus(&line.direction[i].times(&at))));
         let fastest = line.direction.iter().map(|d| over(d).abs());
         // The rounding of a point from double-double is that of its last digit.
-        let moved = fastest.fold(0.0, f64::max) * within * power_of_two(scaled.exponent());
+        let moved = fastest.fold(0.0, f64::max) * within * power_of_two(scaled.exponent);
         let (gradient, error) = bounded::gradient(&self.field, point.into(), 2.0 * moved);
         // Written so that NaN fails.
         let certain = error <= gradient.length() * normal::SHARP;
         self.world_normal(gradient).filter(|_| certain)
-    }
-
-    pub fn tape(&self) -> &Tape {
-        self.field.tape()
     }
 
     /// The point, in the world, of a hit at t. From a far origin o + t d is off by the rounding of its
@@ -130,7 +125,7 @@ impl SteppingFinder {
         let plain = ray.at(t);
         let scaled = ScaledRay::new(ray);
         let line = self.local(&scaled);
-        let scaled_t = t * power_of_two(scaled.exponent());
+        let scaled_t = t * power_of_two(scaled.exponent);
         let local = line.at(scaled_t);
         let gradient = self.field.gradient(local);
         let step = gradient * (self.field.value(local) / gradient.length_squared());

@@ -250,7 +250,7 @@ impl Certified {
                 continue;
             }
             let multiplicity = exact::order_of_vanishing(self, &factor.program, &ray, t);
-            if multiplicity < 2 || multiplicity > factor.program.result().degree {
+            if multiplicity < 2 || multiplicity > factor.program.result.degree {
                 continue;
             }
             let mut before = Packet {

@@ -280,7 +280,7 @@ impl EnclosedPacket {
     /// The first hit of a world ray, t in units of its direction.
     pub fn first_hit(&self, ray: &Ray, limits: [f64; 2], searching: &Searching) -> Outcome {
         let scaled = ScaledRay::new(ray);
-        let unit = power_of_two(scaled.exponent());
+        let unit = power_of_two(scaled.exponent);
         let local = self.ladder.double_double.local(&scaled);
         let limits = limits.map(|t| (t * unit).clamp(-f64::MAX, f64::MAX));
         let search = self

@@ -13,7 +13,7 @@ use glam::DVec3;
 #[derive(Debug, Clone)]
 pub struct PlacedImplicit {
     stepping: SteppingFinder,
-    finder: Finder,
+    pub finder: Finder,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,10 +31,6 @@ impl PlacedImplicit {
             finder: Finder::new(implicit, &stepping.ladder),
             stepping,
         })
-    }
-
-    pub fn finder(&self) -> &Finder {
-        &self.finder
     }
 
     /// The first hit with `t_min` < t < `t_max` inside the clip box; t = 0 counts where `t_min` is 0.
@@ -101,7 +97,7 @@ impl PlacedImplicit {
         let within = (t - enclosure[0]).max(enclosure[1] - t);
         let certain = self.stepping.certain_normal(ray, t, within);
         let exact = || {
-            let (tape, prover) = (self.stepping.tape(), self.finder.prover.as_ref()?);
+            let (tape, prover) = (&self.stepping.field.tape, self.finder.prover.as_ref()?);
             let gradient = prover.gradient_direction(tape, ray, enclosure)?;
             self.stepping.world_normal(gradient)
         };

@@ -38,7 +38,7 @@ pub struct LaneImplicit<T> {
     bounds: OuterBox<T>,
     /// 16u of a world coordinate of 1 (see [`Packet::roundoff`]), as a length in object coordinates.
     rounding: T,
-    finder: Finder,
+    pub finder: Finder,
 }
 
 thread_local! {
@@ -87,10 +87,6 @@ impl<T: Scalar> LaneImplicit<T> {
             rounding: T::from_f64(16.0 * T::ROUNDOFF * largest_row),
             finder: Finder::new(implicit, ladder),
         }
-    }
-
-    pub fn finder(&self) -> &Finder {
-        &self.finder
     }
 
     /// The first hits before `limit`; where the mask is false, none is known.

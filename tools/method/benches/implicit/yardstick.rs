@@ -24,7 +24,7 @@ impl Yardstick {
     pub fn new(tape: &Tape, half: f64) -> Self {
         #[expect(clippy::expect_used, reason = "only polynomials are measured")]
         let program = Program::new(tape, &DEGREES).expect("a polynomial");
-        let rows = RefCell::new(vec![0.0; program.rows()]);
+        let rows = RefCell::new(vec![0.0; program.rows]);
         Self {
             program,
             half,
@@ -58,7 +58,7 @@ impl Yardstick {
     /// Coefficients of powers of t about a point; returns the degree.
     fn powers(&self, point: DVec3, d: DVec3, powers: &mut [f64; ROOM]) -> usize {
         let mut rows = self.rows.borrow_mut();
-        for step in self.program.steps() {
+        for step in &self.program.steps {
             match step {
                 Step::Coordinate { axis, to } => {
                     rows[to.at] = point[*axis];
@@ -92,7 +92,7 @@ impl Yardstick {
                 }
             }
         }
-        let result = self.program.result();
+        let result = self.program.result;
         powers[..=result.degree].copy_from_slice(&rows[result.at..=result.at + result.degree]);
         let mut degree = result.degree;
         while degree > 0 && powers[degree] == 0.0 {

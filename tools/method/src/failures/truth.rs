@@ -88,7 +88,7 @@ fn canonical(kind: ShapeKind, body: &Body, ray: &Ray) -> Vec<Exact> {
         }),
         ShapeKind::Disk | ShapeKind::Rectangle | ShapeKind::Plane => flat(kind, &line),
     };
-    let unit = Exact::of(power_of_two(scaled.exponent()));
+    let unit = Exact::of(power_of_two(scaled.exponent));
     let mut ends = ends.map_or_else(Vec::new, Vec::from);
     ends.dedup_by(|a, b| order(a, b) == Ordering::Equal);
     ends.into_iter().map(|t| t.divided_by(&unit)).collect()

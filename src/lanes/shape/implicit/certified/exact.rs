@@ -45,13 +45,13 @@ impl IntegerRay {
         Self {
             coordinates: [0, 1, 2].map(|i| [&line.origin[i], &line.direction[i]].map(integer)),
             scale: integer(&line.scale),
-            unit: power_of_two(scaled.exponent()),
+            unit: power_of_two(scaled.exponent),
         }
     }
 
     /// Coefficients of a factor's field in powers of t.
     fn coefficients(&self, program: &Program) -> Option<Vec<BigInt>> {
-        program.powers(&self.coordinates, &self.scale, program.result().degree)
+        program.powers(&self.coordinates, &self.scale, program.result.degree)
     }
 
     /// Where the line is in the closed clip box and the limits are kept; `None` for nowhere.
@@ -204,7 +204,7 @@ pub(super) fn order_of_vanishing(
         *o >>= shift;
         *d >>= shift_directions;
     }
-    let degree = program.result().degree;
+    let degree = program.result.degree;
     let small = small(&coordinates, &scale);
     // Mostly the first two powers decide, and machine integers hold them.
     for highest in [1, 2, 4, degree] {

@@ -181,7 +181,7 @@ fn expand<L: DoubleLanes, W: Word<L>>(
     ends: &[[W; 2]; 3],
     rows: &mut [Row],
 ) {
-    for step in factor.program.steps() {
+    for step in &factor.program.steps {
         match step {
             Step::Coordinate { axis, to } => {
                 ends[*axis][0].store(l, rows, to.at);
@@ -237,7 +237,7 @@ fn expand<L: DoubleLanes, W: Word<L>>(
             }
         }
     }
-    let result = factor.program.result();
+    let result = factor.program.result;
     for (i, &reciprocal) in factor.reciprocals.iter().enumerate() {
         let c = W::load(l, rows, result.at + i).times(W::constant(l, reciprocal));
         c.store(l, rows, result.at + i);
@@ -371,7 +371,7 @@ impl<L: DoubleLanes> Combined<L> {
         clipped: &Clipped<L>,
         rows: &[Row],
     ) {
-        let result = factor.program.result();
+        let result = factor.program.result;
         let bounds = &factor.bounds[W::ROWS - 1];
         let error = clipped
             .shift

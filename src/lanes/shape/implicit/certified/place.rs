@@ -116,14 +116,14 @@ impl Certified {
 
     /// Largest number of coefficients of a factor's forms.
     pub(super) fn rows(&self) -> usize {
-        let rows = self.factors.iter().map(|factor| factor.program.rows());
+        let rows = self.factors.iter().map(|factor| factor.program.rows);
         rows.max().unwrap_or(0)
     }
 }
 
 impl FactorField {
     fn new(program: Program, power: u32, reach: [f64; 3]) -> Self {
-        let degree = program.result().degree;
+        let degree = program.result.degree;
         let binomials: Vec<f64> = (0..=degree).map(|i| binomial(degree, i)).collect();
         let reciprocal = |b: &f64| {
             let high = 1.0 / b;
