@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::reference::{Reference, ReferenceError, pixels, planes};
+use super::reference::{Reference, pixels, planes};
 use super::subject::Ready;
 use crate::film::{Attribute, Picture, exr, hash, names};
 use crate::render::Progress;
@@ -112,15 +112,4 @@ pub fn write(
         .map(|(name, value)| (name.to_owned(), value));
     picture.attributes = all.collect();
     exr::write(path, &picture)
-}
-
-/// Reads a reference that a study has written, to continue that study.
-///
-/// # Errors
-/// [`ReferenceError`] where the file has changed so that it cannot be one.
-pub fn read(path: &Path, size: [usize; 2]) -> Result<Reference, ReferenceError> {
-    Ok(Reference {
-        name: "own".to_owned(),
-        ..Reference::of_picture(path, &exr::read(path)?, size)?
-    })
 }

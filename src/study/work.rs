@@ -180,7 +180,10 @@ impl<'a> Work<'a> {
             }
             own::write(&path, &sums.reference(size), &sums, &own, &self.set)?;
         }
-        let reference = own::read(&path, size)?;
+        let reference = Reference {
+            name: "own".to_owned(),
+            ..Reference::of_picture(&path, &exr::read(&path)?, size)?
+        };
         let about = format!(
             "a reference rendered by the study itself with its own seeds ({}), {} samples a pixel a render",
             own.name, own.scene.image.spp

@@ -96,28 +96,15 @@ impl<'a> Parser<'a> {
     }
 
     fn sum(&mut self) -> Parsed {
-        let add = |mark, builder: &mut Builder, left, right| match mark {
-            b'+' => builder.sum(left, right),
-            _ => builder.difference(left, right),
-        };
-        self.chain(b"+-", Self::product, add)
+        self.chain(b"+-", Self::product)
     }
 
     fn product(&mut self) -> Parsed {
-        let multiply = |mark, builder: &mut Builder, left, right| match mark {
-            b'*' => builder.product(left, right),
-            _ => builder.quotient(left, right),
-        };
-        self.chain(b"*/", Self::sign, multiply)
+        self.chain(b"*/", Self::sign)
     }
 
     /// Operands with marks between, joined from left to right.
-    fn chain(
-        &mut self,
-        marks: &[u8; 2],
-        operand: impl Fn(&mut Self) -> Parsed,
-        join: impl Fn(u8, &mut Builder, Value, Value) -> Result<Value, Problem>,
-    ) -> Parsed {
+    fn chain(&mut self, marks: &[u8; 2], operand: impl Fn(&mut Self) -> Parsed) -> Parsed {
         let (mut left, mut span) = operand(self)?;
         while let Word::Mark(mark) = self.token.word
             && marks.contains(&mark)
@@ -125,7 +112,12 @@ impl<'a> Parser<'a> {
             self.advance()?;
             let (right, end) = operand(self)?;
             let whole = span.start..end.end;
-            (left, span) = self.make(whole, |builder| join(mark, builder, left, right))?;
+            (left, span) = self.make(whole, |builder| match mark {
+                b'+' => builder.sum(left, right),
+                b'-' => builder.difference(left, right),
+                b'*' => builder.product(left, right),
+                _ => builder.quotient(left, right),
+            })?;
         }
         Ok((left, span))
     }

@@ -209,7 +209,8 @@ impl Certified {
         sharper: bool,
         workspace: &mut Workspace,
     ) -> Answers {
-        let rows = self.rows() * if sharper { 2 } else { 1 };
+        let rows = self.factors.iter().map(|factor| factor.program.rows);
+        let rows = rows.max().unwrap_or(0) * if sharper { 2 } else { 1 };
         if workspace.rows.len() < rows {
             workspace.rows.resize(rows, Row::default());
         }

@@ -118,9 +118,12 @@ impl<T: Scalar> LaneImplicit<T> {
                     self.first_change(l, ray, start, active)
                 }
                 Some(prover) => {
-                    let rays = PacketRays::new(l, ray);
+                    let arrays =
+                        inlined!(|v: Vec3<L::Real>| [array(l, v.x), array(l, v.y), array(l, v.z)]);
+                    let rays = [arrays(ray.origin), arrays(ray.direction)];
                     let bits = [active.bits(), start.on.bits()];
-                    let (t, found) = rays.ask(l.instructions(), &**prover, bits, L::COUNT, tally);
+                    let set = l.instructions();
+                    let (t, found) = ask(&rays, set, &**prover, bits, L::COUNT, tally);
                     (l.load(&t), l.mask_from_bits(found))
                 }
             };
@@ -268,60 +271,45 @@ impl<T: Scalar> LaneImplicit<T> {
     }
 }
 
-struct PacketRays<T> {
-    origin: [[T; WIDEST]; 3],
-    direction: [[T; WIDEST]; 3],
-}
-
-impl<T: Scalar> PacketRays<T> {
-    #[inline(always)]
-    fn new<L: Lanes<Scalar = T>>(l: L, ray: &LaneRay<L>) -> Self {
-        let vector = inlined!(|v: Vec3<L::Real>| [array(l, v.x), array(l, v.y), array(l, v.z)]);
-        Self {
-            origin: vector(ray.origin),
-            direction: vector(ray.direction),
+/// Asks a finder that proves its answers, eight rays at a time, given by origins and directions:
+/// `active` and `leaving` rays by bit.
+#[inline(never)]
+fn ask<T: Scalar>(
+    [origin, direction]: &[[[T; WIDEST]; 3]; 2],
+    instructions: Instructions,
+    prover: &dyn Prover,
+    [active, leaving]: [u32; 2],
+    count: usize,
+    tally: &mut Tally,
+) -> ([T; WIDEST], u32) {
+    let mut t = [T::default(); WIDEST];
+    let mut found = 0;
+    for base in (0..count).step_by(WIDTH) {
+        let mut packet = Packet {
+            active: active >> base & 0xff,
+            leaving: leaving >> base & 0xff,
+            roundoff: T::ROUNDOFF,
+            ..Packet::default()
+        };
+        if packet.active == 0 {
+            continue;
         }
-    }
-
-    /// Asks a finder that proves its answers, eight rays at a time: `active` and `leaving` rays by bit.
-    #[inline(never)]
-    fn ask(
-        &self,
-        instructions: Instructions,
-        prover: &dyn Prover,
-        [active, leaving]: [u32; 2],
-        count: usize,
-        tally: &mut Tally,
-    ) -> ([T; WIDEST], u32) {
-        let mut t = [T::default(); WIDEST];
-        let mut found = 0;
-        for base in (0..count).step_by(WIDTH) {
-            let mut packet = Packet {
-                active: active >> base & 0xff,
-                leaving: leaving >> base & 0xff,
-                roundoff: T::ROUNDOFF,
-                ..Packet::default()
-            };
-            if packet.active == 0 {
-                continue;
+        for lane in 0..WIDTH {
+            for axis in 0..3 {
+                packet.origin[axis][lane] = origin[axis][base + lane].to_f64();
+                packet.direction[axis][lane] = direction[axis][base + lane].to_f64();
             }
-            for lane in 0..WIDTH {
-                for axis in 0..3 {
-                    packet.origin[axis][lane] = self.origin[axis][base + lane].to_f64();
-                    packet.direction[axis][lane] = self.direction[axis][base + lane].to_f64();
-                }
-            }
-            let answers = WORKSPACE.with_borrow_mut(|workspace| {
-                workspace.instructions = instructions;
-                prover.first_hits(&packet, false, workspace)
-            });
-            let decided = answers.found | answers.absent;
-            for lane in (0..WIDTH).filter(|lane| packet.active >> lane & 1 == 1) {
-                t[base + lane] = T::from_f64(answers.t[lane]);
-                tally.count((decided >> lane & 1 == 1).then_some(answers.tiers[lane]));
-            }
-            found |= (answers.found & packet.active) << base;
         }
-        (t, found)
+        let answers = WORKSPACE.with_borrow_mut(|workspace| {
+            workspace.instructions = instructions;
+            prover.first_hits(&packet, false, workspace)
+        });
+        let decided = answers.found | answers.absent;
+        for lane in (0..WIDTH).filter(|lane| packet.active >> lane & 1 == 1) {
+            t[base + lane] = T::from_f64(answers.t[lane]);
+            tally.count((decided >> lane & 1 == 1).then_some(answers.tiers[lane]));
+        }
+        found |= (answers.found & packet.active) << base;
     }
+    (t, found)
 }

@@ -113,12 +113,6 @@ impl Certified {
             margin,
         })
     }
-
-    /// Largest number of coefficients of a factor's forms.
-    pub(super) fn rows(&self) -> usize {
-        let rows = self.factors.iter().map(|factor| factor.program.rows);
-        rows.max().unwrap_or(0)
-    }
 }
 
 impl FactorField {
