@@ -59,13 +59,13 @@ impl Slope {
         if points.len() < 2 {
             return None;
         }
-        let line = Line::through(&points);
+        let (slope, intercept, shares) = line(&points);
         let (mut variance, mut squares, mut excess) = (0.0, 0.0, 0.0);
-        for (p, share) in points.iter().zip(&line.shares) {
+        for (p, share) in points.iter().zip(&shares) {
             let part = share * share * p.variance;
             variance += part;
             squares += part * part / p.freedom;
-            let miss = p.y - line.intercept - line.slope * p.x;
+            let miss = p.y - intercept - slope * p.x;
             excess += miss * miss / p.variance;
         }
         let own_freedom = variance * variance / squares;
@@ -80,9 +80,9 @@ impl Slope {
             (excess.max(1.0), beyond)
         };
         let standard_error = (scale * variance).sqrt();
-        (line.slope.is_finite() && standard_error.is_finite()).then_some(Self {
-            value: line.slope,
-            intercept: line.intercept,
+        (slope.is_finite() && standard_error.is_finite()).then_some(Self {
+            value: slope,
+            intercept,
             standard_error,
             freedom,
             straight,
@@ -115,34 +115,22 @@ impl Slope {
     }
 }
 
-/// A line by weighted least squares.
-struct Line {
-    slope: f64,
-    intercept: f64,
-    /// What each ordinate counts for in the slope.
-    shares: Vec<f64>,
-}
-
-impl Line {
-    fn through(points: &[Logarithm]) -> Self {
-        let usual = points.iter().map(|p| p.variance).sum::<f64>() / points.len() as f64;
-        let weights: Vec<f64> = points.iter().map(|p| 1.0 / (p.variance + usual)).collect();
-        let sum = |f: &dyn Fn(&Logarithm) -> f64| -> f64 {
-            points.iter().zip(&weights).map(|(p, w)| w * f(p)).sum()
-        };
-        let all = sum(&|_| 1.0);
-        let (mean_x, mean_y) = (sum(&|p| p.x) / all, sum(&|p| p.y) / all);
-        let squares = sum(&|p| (p.x - mean_x) * (p.x - mean_x));
-        let share = |(p, w): (&Logarithm, &f64)| w * (p.x - mean_x) / squares;
-        let shares: Vec<f64> = points.iter().zip(&weights).map(share).collect();
-        let parts = points.iter().zip(&shares).map(|(p, c)| c * p.y);
-        let slope = parts.sum::<f64>();
-        Self {
-            slope,
-            intercept: mean_y - slope * mean_x,
-            shares,
-        }
-    }
+/// Slope and intercept of a line by weighted least squares, and what each ordinate counts for in the
+/// slope.
+fn line(points: &[Logarithm]) -> (f64, f64, Vec<f64>) {
+    let usual = points.iter().map(|p| p.variance).sum::<f64>() / points.len() as f64;
+    let weights: Vec<f64> = points.iter().map(|p| 1.0 / (p.variance + usual)).collect();
+    let sum = |f: &dyn Fn(&Logarithm) -> f64| -> f64 {
+        points.iter().zip(&weights).map(|(p, w)| w * f(p)).sum()
+    };
+    let all = sum(&|_| 1.0);
+    let (mean_x, mean_y) = (sum(&|p| p.x) / all, sum(&|p| p.y) / all);
+    let squares = sum(&|p| (p.x - mean_x) * (p.x - mean_x));
+    let share = |(p, w): (&Logarithm, &f64)| w * (p.x - mean_x) / squares;
+    let shares: Vec<f64> = points.iter().zip(&weights).map(share).collect();
+    let parts = points.iter().zip(&shares).map(|(p, c)| c * p.y);
+    let slope = parts.sum::<f64>();
+    (slope, mean_y - slope * mean_x, shares)
 }
 
 impl Logarithm {
