@@ -63,11 +63,8 @@ pub fn arithmetic(
     [a, b]: [&Bounds; 2],
     to_nearest: bool,
 ) -> Bounds {
-    let job = Arithmetic {
-        operation,
-        to_nearest,
-    };
-    set.run(Each { job, a, b }).0
+    let task = Task::Operation(operation, to_nearest);
+    set.run(Each { task, a, b }).0
 }
 
 /// A function of as many intervals as fill packets of any width, and where it may be undefined.
@@ -79,27 +76,22 @@ pub fn function(
     function: Function,
     [a, b]: [&Bounds; 2],
 ) -> (Bounds, Vec<bool>) {
-    let job = function;
-    set.run(Each { job, a, b })
+    let task = Task::Function(function);
+    set.run(Each { task, a, b })
 }
 
-/// Something made of a packet of intervals.
-trait OfIntervals {
-    fn of<L: DoubleLanes>(
-        &self,
-        a: Interval<L>,
-        b: Interval<L>,
-        domain: &mut Domain<L>,
-    ) -> Interval<L>;
+enum Task {
+    Operation(Operation, bool),
+    Function(Function),
 }
 
-struct Each<'a, J> {
-    job: J,
+struct Each<'a> {
+    task: Task,
     a: &'a Bounds,
     b: &'a Bounds,
 }
 
-impl<J: OfIntervals> Job<f64> for Each<'_, J> {
+impl Job<f64> for Each<'_> {
     type Output = (Bounds, Vec<bool>);
 
     #[inline(always)]
@@ -113,7 +105,11 @@ impl<J: OfIntervals> Job<f64> for Each<'_, J> {
             let a = Interval::new(l, l.load(&self.a.low[i..]), l.load(&self.a.high[i..]));
             let b = Interval::new(l, l.load(&self.b.low[i..]), l.load(&self.b.high[i..]));
             let mut domain = Domain::unbroken(l);
-            let c = self.job.of(a, b, &mut domain);
+            let c = match self.task {
+                Task::Operation(operation, true) => nearest(operation, a, b),
+                Task::Operation(operation, false) => outward(operation, a, b),
+                Task::Function(function) => of(function, a, b, &mut domain),
+            };
             l.store(c.low, &mut bounds.low[i..]);
             l.store(c.high, &mut bounds.high[i..]);
             for j in each(domain.broken.bits()) {
@@ -124,24 +120,14 @@ impl<J: OfIntervals> Job<f64> for Each<'_, J> {
     }
 }
 
-struct Arithmetic {
-    operation: Operation,
-    to_nearest: bool,
-}
-
-impl OfIntervals for Arithmetic {
-    #[inline(always)]
-    fn of<L: DoubleLanes>(&self, a: Interval<L>, b: Interval<L>, _: &mut Domain<L>) -> Interval<L> {
-        if self.to_nearest {
-            return nearest(self.operation, a, b);
-        }
-        match self.operation {
-            Operation::Sum => a + b,
-            Operation::Difference => a - b,
-            Operation::Product => a * b,
-            Operation::Quotient => a / b,
-            Operation::SquareRoot => a.square_root(),
-        }
+#[inline(always)]
+fn outward<L: DoubleLanes>(operation: Operation, a: Interval<L>, b: Interval<L>) -> Interval<L> {
+    match operation {
+        Operation::Sum => a + b,
+        Operation::Difference => a - b,
+        Operation::Product => a * b,
+        Operation::Quotient => a / b,
+        Operation::SquareRoot => a.square_root(),
     }
 }
 
@@ -172,32 +158,30 @@ fn nearest<L: DoubleLanes>(operation: Operation, a: Interval<L>, b: Interval<L>)
     }
 }
 
-impl OfIntervals for Function {
-    #[inline(always)]
-    fn of<L: DoubleLanes>(
-        &self,
-        a: Interval<L>,
-        b: Interval<L>,
-        domain: &mut Domain<L>,
-    ) -> Interval<L> {
-        match self {
-            Self::Exponential => a.exponential(),
-            Self::Logarithm => a.logarithm(domain),
-            Self::Sine => a.sine_cosine().0,
-            Self::Cosine => a.sine_cosine().1,
-            Self::SineThin => a.sine_cosine_thin().0,
-            Self::CosineThin => a.sine_cosine_thin().1,
-            Self::Tangent => a.tangent(domain),
-            Self::ArcSine => a.arc_sine(domain),
-            Self::ArcCosine => a.arc_cosine(domain),
-            Self::ArcTangent => a.arc_tangent(),
-            Self::ArcTangent2 => a.arc_tangent_of_quotient(b, domain),
-            Self::HyperbolicSine => a.hyperbolic_sine(),
-            Self::HyperbolicCosine => a.hyperbolic_cosine(),
-            Self::HyperbolicTangent => a.hyperbolic_tangent(),
-            Self::Power => a.power(b, domain),
-            Self::Seventh => a.whole_power(7),
-            Self::MinusFourth => a.whole_power(-4),
-        }
+#[inline(always)]
+fn of<L: DoubleLanes>(
+    function: Function,
+    a: Interval<L>,
+    b: Interval<L>,
+    domain: &mut Domain<L>,
+) -> Interval<L> {
+    match function {
+        Function::Exponential => a.exponential(),
+        Function::Logarithm => a.logarithm(domain),
+        Function::Sine => a.sine_cosine().0,
+        Function::Cosine => a.sine_cosine().1,
+        Function::SineThin => a.sine_cosine_thin().0,
+        Function::CosineThin => a.sine_cosine_thin().1,
+        Function::Tangent => a.tangent(domain),
+        Function::ArcSine => a.arc_sine(domain),
+        Function::ArcCosine => a.arc_cosine(domain),
+        Function::ArcTangent => a.arc_tangent(),
+        Function::ArcTangent2 => a.arc_tangent_of_quotient(b, domain),
+        Function::HyperbolicSine => a.hyperbolic_sine(),
+        Function::HyperbolicCosine => a.hyperbolic_cosine(),
+        Function::HyperbolicTangent => a.hyperbolic_tangent(),
+        Function::Power => a.power(b, domain),
+        Function::Seventh => a.whole_power(7),
+        Function::MinusFourth => a.whole_power(-4),
     }
 }
