@@ -186,6 +186,11 @@ pub fn from_zero(origin: DVec3, direction: DVec3) -> Query {
     }
 }
 
+/// An object of a scene file; shape and transforms as they are written.
+pub fn object(shape: &str, material: &str, transform: &str) -> String {
+    format!("[[object]]\nshape = {shape}\nmaterial = \"{material}\"\ntransform = [{transform}]\n")
+}
+
 /// A surface within the cube [−half, half]³.
 pub fn implicit(field: impl Into<Arc<Expression>>, half: f64, finder: FinderChoice) -> Implicit {
     Implicit {
