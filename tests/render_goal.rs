@@ -16,14 +16,10 @@ camera = { from = [0, 2, 4], to = [0, 0, 0], fov = 50 }
 image = { size = [8, 8], spp = 8, max_depth = 3 }
 materials.floor = { diffuse = 0.7 }
 materials.lamp = { emit = 20 }
-[[object]]
-shape = { rectangle = { size = [3, 3] } }
-material = "floor"
-transform = [{ rotate_x = -90 }]
-[[object]]
-shape = { sphere = { radius = 0.15 } }
-material = "lamp"
-transform = [{ translate = [0.4, 0.6, 0] }]
+object = [
+    { shape = { rectangle = { size = [3, 3] } }, material = "floor", transform = [{ rotate_x = -90 }] },
+    { shape = { sphere = { radius = 0.15 } }, material = "lamp", transform = [{ translate = [0.4, 0.6, 0] }] },
+]
 "#;
 
 /// The scene with settings of its image.
