@@ -170,10 +170,9 @@ pub fn rendered(scene: &Scene, plan: &Plan) -> Rendered {
 /// The bits of every pixel's X, Y, Z and of their standard errors.
 pub fn pixel_bits(rendered: &Rendered) -> Vec<[[u64; 3]; 2]> {
     let bits = |xyz: [f64; 3]| xyz.map(f64::to_bits);
-    let pixels = rendered.xyz();
-    let pixels = pixels.iter();
+    let pixels = rendered.xyz().into_iter();
     pixels
-        .map(|e| [bits(e.mean), bits(e.standard_error)])
+        .map(|e| [e.mean, e.standard_error].map(bits))
         .collect()
 }
 
