@@ -21,17 +21,14 @@ pub struct Levels {
 /// The answer to a question.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// What was asked.
     pub question: Question,
     /// Picture minus reference, over the reference's mean.
     pub difference: Estimate,
-    /// What that shows.
     pub verdict: Verdict,
     /// In which round, from 1.
     pub round: u32,
 }
 
-/// All answers about a case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
     pub answers: Vec<Answer>,
@@ -54,9 +51,6 @@ impl Levels {
 
 /// Renders and judges: `render` takes camera paths per pixel and the number of the round, and must
 /// draw fresh samples each time.
-///
-/// # Errors
-/// Those of `render`.
 pub fn decide(
     case: &Case,
     planned: &Planned,
@@ -114,7 +108,6 @@ impl Outcome {
         self.answers.iter().any(failed) || self.judgement.as_ref().is_some_and(|j| !j.consistent)
     }
 
-    /// Questions that stay open.
     pub fn open(&self) -> usize {
         let open = |answer: &&Answer| answer.verdict == Verdict::Inconclusive;
         self.answers.iter().filter(open).count()

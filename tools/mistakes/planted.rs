@@ -37,7 +37,6 @@ pub enum Mistake {
     Loop(Planted),
 }
 
-/// All of them, with the words of the table.
 pub const MISTAKES: &[(Mistake, &str)] = &[
     (
         Mistake::Reflectance,

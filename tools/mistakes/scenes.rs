@@ -121,7 +121,6 @@ point = [1.2, 1.5, 0]
 intensity = 1.5
 "#;
 
-/// A scene of the list.
 pub fn scene(text: &str) -> Scene {
     Scene::parse(text).unwrap_or_else(|error| panic!("{error}"))
 }

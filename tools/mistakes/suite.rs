@@ -24,13 +24,11 @@ const NO_MORE: Paths = Paths {
     to_sharpen: 0,
 };
 
-/// All cases, planned once.
 pub struct Suite {
     cases: Vec<(Case, Planned)>,
     levels: Levels,
 }
 
-/// What came of one run.
 #[derive(Debug, Clone, Default)]
 pub struct Run {
     /// Scenes that raised an alarm.
@@ -44,7 +42,6 @@ pub struct Run {
 }
 
 impl Suite {
-    /// Plans all cases from pilots.
     pub fn new() -> Self {
         let cases: Vec<Case> = SCENES
             .iter()
@@ -73,7 +70,6 @@ impl Suite {
         }
     }
 
-    /// Samples and tolerances, in words.
     pub fn text(&self) -> String {
         let line = |(case, planned): &(Case, Planned)| {
             let tolerances = planned.questions.iter().map(|q| q.tolerance);

@@ -19,13 +19,10 @@ pub enum CommandError {
     /// A table cannot be read, or a result not written: what, which file, why.
     #[error("error: cannot {} {}: {}", .0, .1.display(), .2)]
     File(&'static str, PathBuf, String),
-    /// The rays or surfaces cannot be used.
     #[error("error: {0}")]
     Oracle(#[from] OracleError),
-    /// There is no such surface to paint.
     #[error("error: --map: there is no surface \"{name}\"; there are {known}")]
     Surface { name: String, known: String },
-    /// Standard output cannot be written to.
     #[error("error: cannot write the output: {0}")]
     Output(Error),
 }
@@ -119,7 +116,6 @@ fn described(contestant: Contestant) -> String {
     }
 }
 
-/// The results over all classes as a table for people.
 fn summary(results: &[Outcome]) -> String {
     let mut text = String::new();
     for result in results {

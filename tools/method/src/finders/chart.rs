@@ -31,7 +31,6 @@ pub fn csv(results: &[Result]) -> String {
     text
 }
 
-/// The chart could not be drawn.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the chart cannot be drawn: {0}")]
 pub struct ChartError(String);

@@ -34,7 +34,6 @@ pub const CLASSES: [&str; 7] = [
     "far",
 ];
 
-/// A finder that takes part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Contestant {
     /// Equal steps and bisection.
