@@ -3,29 +3,20 @@
 use etalon_lanes::math::instructions::{DoubleLanes, Instructions, Job};
 use etalon_lanes::math::interval::{Domain, Interval};
 use etalon_lanes::math::lanes::{Mask, Real};
-use etalon_lanes::math::packet::each;
+use etalon_lanes::math::packet::array;
 
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Bounds {
-    pub low: Vec<f64>,
-    pub high: Vec<f64>,
-}
+use crate::columns::load;
 
-impl Bounds {
-    pub fn push(&mut self, [low, high]: [f64; 2]) {
-        self.low.push(low);
-        self.high.push(high);
-    }
+/// The ends of an interval, low and high.
+pub type Bounds = [f64; 2];
 
-    pub fn at(&self, i: usize) -> [f64; 2] {
-        [self.low[i], self.high[i]]
-    }
-
-    /// Whether all are the same bits.
-    pub fn same_bits(&self, other: &Self) -> bool {
-        let bits = |x: &[f64]| x.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-        bits(&self.low) == bits(&other.low) && bits(&self.high) == bits(&other.high)
-    }
+/// Whether all are the same bits.
+pub fn same_bits(a: &[Bounds], b: &[Bounds]) -> bool {
+    let bits = |x: &f64| x.to_bits();
+    a.iter()
+        .flatten()
+        .map(bits)
+        .eq(b.iter().flatten().map(bits))
 }
 
 /// An enum of these variants, and the list of all.
@@ -60,9 +51,9 @@ listed! {
 pub fn arithmetic(
     set: Instructions,
     operation: Operation,
-    [a, b]: [&Bounds; 2],
+    [a, b]: [&[Bounds]; 2],
     to_nearest: bool,
-) -> Bounds {
+) -> Vec<Bounds> {
     let task = Task::Operation(operation, to_nearest);
     set.run(Each { task, a, b }).0
 }
@@ -74,8 +65,8 @@ pub fn arithmetic(
 pub fn function(
     set: Instructions,
     function: Function,
-    [a, b]: [&Bounds; 2],
-) -> (Bounds, Vec<bool>) {
+    [a, b]: [&[Bounds]; 2],
+) -> (Vec<Bounds>, Vec<bool>) {
     let task = Task::Function(function);
     set.run(Each { task, a, b })
 }
@@ -87,34 +78,31 @@ enum Task {
 
 struct Each<'a> {
     task: Task,
-    a: &'a Bounds,
-    b: &'a Bounds,
+    a: &'a [Bounds],
+    b: &'a [Bounds],
 }
 
 impl Job<f64> for Each<'_> {
-    type Output = (Bounds, Vec<bool>);
+    type Output = (Vec<Bounds>, Vec<bool>);
 
     #[inline(always)]
     fn run<L: DoubleLanes>(self, l: L) -> Self::Output {
-        let count = self.a.low.len();
+        let count = self.a.len();
         assert!(count.is_multiple_of(8), "{count} intervals");
-        let [low, high] = [(); 2].map(|()| vec![0.0; count]);
-        let mut bounds = Bounds { low, high };
-        let mut broken = vec![false; count];
-        for i in (0..count).step_by(L::COUNT) {
-            let a = Interval::new(l, l.load(&self.a.low[i..]), l.load(&self.a.high[i..]));
-            let b = Interval::new(l, l.load(&self.b.low[i..]), l.load(&self.b.high[i..]));
+        let (mut bounds, mut broken) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        for (a, b) in self.a.chunks(L::COUNT).zip(self.b.chunks(L::COUNT)) {
+            let ends = |x: &[Bounds], end: usize| load(l, x.iter().map(|x| x[end]));
+            let a = Interval::new(l, ends(a, 0), ends(a, 1));
+            let b = Interval::new(l, ends(b, 0), ends(b, 1));
             let mut domain = Domain::unbroken(l);
             let c = match self.task {
                 Task::Operation(operation, true) => nearest(operation, a, b),
                 Task::Operation(operation, false) => outward(operation, a, b),
                 Task::Function(function) => of(function, a, b, &mut domain),
             };
-            l.store(c.low, &mut bounds.low[i..]);
-            l.store(c.high, &mut bounds.high[i..]);
-            for j in each(domain.broken.bits()) {
-                broken[i + j] = true;
-            }
+            let (low, high, bits) = (array(l, c.low), array(l, c.high), domain.broken.bits());
+            bounds.extend((0..L::COUNT).map(|i| [low[i], high[i]]));
+            broken.extend((0..L::COUNT).map(|i| bits >> i & 1 == 1));
         }
         (bounds, broken)
     }

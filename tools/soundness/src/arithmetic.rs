@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use etalon::Instructions;
-use etalon_doors::intervals::{Bounds, Operation, arithmetic};
+use etalon_doors::intervals::{Bounds, Operation, arithmetic, same_bits};
 
 use super::exact::{compare_product, compare_sum};
 use super::random::Source;
@@ -90,19 +90,14 @@ impl Report {
 /// the rounding outward, to see that this is noticed.
 pub fn check(operation: Operation, seed: u64, count: usize, unsound: bool) -> Report {
     let mut source = Source::new(seed);
-    let (mut a, mut b) = (Bounds::default(), Bounds::default());
-    for _ in 0..count {
-        let [first, second] = source.pair();
-        a.push(first);
-        b.push(second);
-    }
+    let pairs = (0..count).map(|_| <(Bounds, Bounds)>::from(source.pair()));
+    let (a, b): (Vec<_>, Vec<_>) = pairs.unzip();
     let results = Instructions::all().into_iter();
     let results = results.map(|set| arithmetic(set, operation, [&a, &b], unsound));
-    let (first, mut report) = Report::of(results, |a, b| a.same_bits(b));
-    for i in 0..count {
-        let bounds = first.at(i);
-        for x in ends(a.at(i)) {
-            for y in ends(b.at(i)) {
+    let (first, mut report) = Report::of(results, |a, b| same_bits(a, b));
+    for ((a, b), bounds) in a.into_iter().zip(b).zip(first) {
+        for x in ends(a) {
+            for y in ends(b) {
                 let held = holds(operation, x, y, bounds);
                 report.note(held, || {
                     format!("{operation:?} of {x:e}, {y:e} is not in {bounds:?}")
