@@ -339,34 +339,31 @@ fn densities_are_those_of_the_geometry() {
 
 /// Equal-area bins of the sphere of directions about an axis.
 struct Bins {
-    rows: usize,
-    columns: usize,
     axis: [DVec3; 3],
     /// 1 − cos of the cone covered.
     height: f64,
 }
 
 impl Bins {
+    /// Rows, and columns of each.
+    const SIDE: usize = 12;
+
     fn about(axis: DVec3, height: f64) -> Self {
         let z = axis.normalize();
         let x = z.any_orthonormal_vector();
-        Self {
-            rows: 12,
-            columns: 12,
-            axis: [x, z.cross(x), z],
-            height,
-        }
+        let axis = [x, z.cross(x), z];
+        Self { axis, height }
     }
 
     fn of(&self, direction: DVec3) -> Option<usize> {
         let [x, y, z] = self.axis.map(|a| a.dot(direction));
         let h = (x * x + y * y) / (1.0 + z);
-        let row = (h / self.height * self.rows as f64).floor();
-        if row >= self.rows as f64 {
+        let row = (h / self.height * Self::SIDE as f64).floor();
+        if row >= Self::SIDE as f64 {
             return None;
         }
-        let column = ((turn(x, y) * self.columns as f64) as usize).min(self.columns - 1);
-        Some(row as usize * self.columns + column)
+        let column = ((turn(x, y) * Self::SIDE as f64) as usize).min(Self::SIDE - 1);
+        Some(row as usize * Self::SIDE + column)
     }
 
     /// A direction by equal-area coordinates in [0, 1)².
@@ -397,23 +394,23 @@ fn verdict(
     let farthest = cosines.fold(1.0, f64::min);
     let bins = Bins::about(axis, ((1.0 - farthest) * 1.05 + 1e-6).min(2.0));
     let fine = 40;
-    let (rows, columns) = (bins.rows * fine, bins.columns * fine);
+    let side = Bins::SIDE * fine;
     let placed = light.placed();
     let cell = |k: usize| {
-        let (i, j) = (k / columns, k % columns);
-        let middle = |i: usize, of: usize| (i as f64 + 0.5) / of as f64;
-        let direction = bins.direction(middle(i, rows), middle(j, columns));
+        let (i, j) = (k / side, k % side);
+        let middle = |i: usize| (i as f64 + 0.5) / side as f64;
+        let direction = bins.direction(middle(i), middle(j));
         let (_, normal) = hit(&placed, p, direction)?;
-        let place = i / fine * bins.columns + j / fine;
+        let place = i / fine * Bins::SIDE + j / fine;
         Some((place, (direction, normal)))
     };
-    let cells = (0..rows * columns).into_par_iter().filter_map(cell);
+    let cells = (0..side * side).into_par_iter().filter_map(cell);
     let (places, directions): (Vec<usize>, Vec<(DVec3, DVec3)>) = cells.unzip();
     let densities = light.ask(Precision::Double, |light| {
         light_densities(Instructions::best(), light, p, &directions)
     });
-    let area = 2.0 * PI * bins.height / (rows * columns) as f64;
-    let mut expected = vec![0.0; bins.rows * bins.columns];
+    let area = 2.0 * PI * bins.height / (side * side) as f64;
+    let mut expected = vec![0.0; Bins::SIDE * Bins::SIDE];
     for (&place, &pdf) in places.iter().zip(&densities) {
         expected[place] += pdf * area;
     }

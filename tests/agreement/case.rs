@@ -39,28 +39,21 @@ pub type CaseError = Box<dyn std::error::Error>;
 impl Case {
     pub fn new(name: &str, mut scene: Scene, bands: Option<BinGrid>) -> Result<Self, Singular> {
         scene.image.replicates = Some(REPLICATES);
-        let hits = first_hits(
-            &scene,
-            Window::whole(scene.image.size),
-            Instructions::best(),
-        )?;
-        let shown: Vec<Option<usize>> = hits
-            .iter()
-            .map(|hit| hit.as_ref().map(|h| scene.objects[h.object].value.material))
-            .collect();
-        let regions = scene.materials.iter().enumerate().map(|(index, material)| {
-            let pixels = shown.iter().enumerate();
-            Region {
-                name: material.name.clone(),
-                pixels: pixels
-                    .filter(|(_, shown)| **shown == Some(index))
-                    .map(|(pixel, _)| pixel)
-                    .collect(),
-            }
+        let names = scene.materials.iter().map(|material| material.name.clone());
+        let regions = names.map(|name| Region {
+            name,
+            pixels: Vec::new(),
         });
-        let regions = regions
-            .filter(|region| region.pixels.len() >= LEAST_PIXELS)
-            .collect();
+        let mut regions: Vec<Region> = regions.collect();
+        let whole = Window::whole(scene.image.size);
+        let hits = first_hits(&scene, whole, Instructions::best())?;
+        for (pixel, hit) in hits.iter().enumerate() {
+            if let Some(hit) = hit {
+                let material = scene.objects[hit.object].value.material;
+                regions[material].pixels.push(pixel);
+            }
+        }
+        regions.retain(|region| region.pixels.len() >= LEAST_PIXELS);
         Ok(Self {
             name: name.to_owned(),
             scene,

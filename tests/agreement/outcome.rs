@@ -29,7 +29,7 @@ pub struct Answer {
     pub round: u32,
 }
 
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Outcome {
     pub answers: Vec<Answer>,
     /// Means, blocks and distribution in the first round.
@@ -59,11 +59,7 @@ pub fn decide(
     mut render: impl FnMut(u32, u32) -> Result<Side, CaseError>,
 ) -> Result<Outcome, CaseError> {
     let mut open = planned.questions.clone();
-    let mut outcome = Outcome {
-        answers: Vec::new(),
-        judgement: None,
-        samples: Vec::new(),
-    };
+    let mut outcome = Outcome::default();
     let mut spp = planned.spp;
     for round in 1..=ROUNDS {
         let picture = render(spp, round)?;

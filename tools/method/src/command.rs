@@ -90,20 +90,14 @@ fn paint(arguments: &Finders, oracle: &Oracle, name: &str) -> Result<bool, Comma
     prepare(&path)?;
     picture.save(&path).map_err(|e| failed(e.to_string()))?;
     let mut text = String::from("finder,precision,steps,wrong,undecided\n");
-    for count in &counts {
-        let contestant = count.contestant;
-        text += &format!(
-            "{},{},{},{},{}\n",
-            contestant.name(),
-            contestant.precision().name(),
-            contestant.steps(),
-            count.wrong,
-            count.undecided
-        );
+    for (contestant, count) in &counts {
+        let (name, precision) = (contestant.name(), contestant.precision().name());
+        let (steps, wrong, undecided) = (contestant.steps(), count.wrong, count.undecided);
+        text += &format!("{name},{precision},{steps},{wrong},{undecided}\n");
     }
     say(&text)?;
     let mut counts = counts.iter();
-    Ok(counts.all(|count| !count.contestant.is_proved() || count.wrong == 0))
+    Ok(counts.all(|(contestant, count)| !contestant.is_proved() || count.wrong == 0))
 }
 
 fn described(contestant: Contestant) -> String {

@@ -58,11 +58,7 @@ fn main() -> ExitCode {
         sound &= rays::check(arguments.rays, arguments.seed);
     }
     println!("{}", if sound { "sound" } else { "NOT SOUND" });
-    if sound {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    }
+    ExitCode::from(u8::from(!sound))
 }
 
 /// All pieces of a check together; a piece that cannot be done counts as violated.
