@@ -32,7 +32,7 @@ fn level() -> f64 {
     sidak(FAMILY, TESTS)
 }
 
-const KINDS: [SamplerKind; 3] = [
+pub const KINDS: [SamplerKind; 3] = [
     SamplerKind::Independent,
     SamplerKind::Stratified,
     SamplerKind::Sobol,

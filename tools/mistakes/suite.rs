@@ -52,16 +52,11 @@ impl Suite {
         let levels = Levels::shared(LEVEL, cases.len(), questions);
         let cases = cases.into_iter().map(|case| {
             let pilot = case.render(PILOT, 1).expect("rendered");
-            let planned = plan(&case, (&pilot, PILOT), &pilot, MOST, levels.question);
+            let level = levels.question;
+            let planned = plan(&case, (&pilot, PILOT), &pilot, MOST, level);
             // The reference has the samples of the picture, so its variance is the same.
             let pilot = case.render(planned.spp, 2).expect("rendered");
-            let planned = plan(
-                &case,
-                (&pilot, planned.spp),
-                &pilot,
-                NO_MORE,
-                levels.question,
-            );
+            let planned = plan(&case, (&pilot, planned.spp), &pilot, NO_MORE, level);
             (case, planned)
         });
         Self {

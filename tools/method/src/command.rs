@@ -83,12 +83,11 @@ fn paint(arguments: &Finders, oracle: &Oracle, name: &str) -> Result<bool, Comma
     };
     let shape = oracle.shape(name).ok_or_else(unknown)?;
     let path = arguments.output.join(format!("finders-{name}.png"));
-    let failed = |reason: String| CommandError::File("write", path.clone(), reason);
     let Some((picture, counts)) = map(shape, arguments.size) else {
-        return Err(failed("the surface cannot be placed".to_owned()));
+        return Err(failed("write", &path)("the surface cannot be placed"));
     };
     prepare(&path)?;
-    picture.save(&path).map_err(|e| failed(e.to_string()))?;
+    picture.save(&path).map_err(failed("write", &path))?;
     let mut text = String::from("finder,precision,steps,wrong,undecided\n");
     for (contestant, count) in &counts {
         let (name, precision) = (contestant.name(), contestant.precision().name());
@@ -134,9 +133,13 @@ fn say(text: &str) -> Result<(), CommandError> {
         .map_err(CommandError::Output)
 }
 
+/// The error of what was to be done to a file.
+fn failed<E: ToString>(what: &'static str, path: &Path) -> impl FnOnce(E) -> CommandError {
+    move |error| CommandError::File(what, path.to_owned(), error.to_string())
+}
+
 fn read(path: &Path) -> Result<String, CommandError> {
-    let failed = |error: Error| CommandError::File("read", path.to_owned(), error.to_string());
-    std::fs::read_to_string(path).map_err(failed)
+    std::fs::read_to_string(path).map_err(failed("read", path))
 }
 
 /// Makes the directory of a file.
@@ -145,18 +148,14 @@ fn prepare(path: &Path) -> Result<(), CommandError> {
     if parent.as_os_str().is_empty() {
         return Ok(());
     }
-    let failed = |error: Error| CommandError::File("write", parent.clone(), error.to_string());
-    std::fs::create_dir_all(&parent).map_err(failed)
+    std::fs::create_dir_all(&parent).map_err(failed("write", &parent))
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
     prepare(path)?;
-    let failed = |error: Error| CommandError::File("write", path.to_owned(), error.to_string());
-    std::fs::write(path, bytes).map_err(failed)
+    std::fs::write(path, bytes).map_err(failed("write", path))
 }
 
 fn write_chart(path: &Path, drawn: Result<String, ChartError>) -> Result<(), CommandError> {
-    let failed =
-        |error: ChartError| CommandError::File("write", path.to_owned(), error.to_string());
-    write(path, drawn.map_err(failed)?.as_bytes())
+    write(path, drawn.map_err(failed("write", path))?.as_bytes())
 }
