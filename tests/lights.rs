@@ -292,10 +292,8 @@ fn both_strategies_see_the_same_density() {
             for (sample, asked) in drawn.iter().zip(asked) {
                 assert!(sample.valid && sample.pdf > 0.0, "{light:?} {p} {sample:?}");
                 // Not within 1e-5 of each other but equal: they are the same function.
-                assert!(
-                    same_bits(sample.pdf, asked),
-                    "{precision:?} {light:?} {p} {sample:?} {asked}"
-                );
+                let same = same_bits(sample.pdf, asked);
+                assert!(same, "{precision:?} {light:?} {p} {sample:?} {asked}");
             }
         }
     }
@@ -641,16 +639,12 @@ fn irradiances_match_the_closed_forms() {
             assert!(relative < 2e-3, "{name}: {relative}");
             // Rounding may bias a mean by some units where the noise is smaller than that.
             let rounding = (mean / irradiance - 1.0).abs() < 50.0 * precision.roundoff();
-            assert!(
-                p > level || rounding,
-                "{name}: p = {p:e}, {mean} for {irradiance}"
-            );
+            let right = p > level || rounding;
+            assert!(right, "{name}: p = {p:e}, {mean} for {irradiance}");
             // Planted: a density that is a per cent too large.
             let wrong: Vec<f64> = estimates.iter().map(|e| e / 1.01).collect();
-            assert!(
-                t_test(&wrong, *irradiance) < level,
-                "{name} would not notice 1 %"
-            );
+            let noticed = t_test(&wrong, *irradiance) < level;
+            assert!(noticed, "{name} would not notice 1 %");
         }
     }
 }

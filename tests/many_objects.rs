@@ -273,10 +273,8 @@ fn balls_are_found_from_afar() {
     for precision in PRECISIONS {
         for (name, sets) in near(&scene, precision, &aimed) {
             for ((ball, _), near) in aimed.iter().zip(sets) {
-                assert!(
-                    near >> ball & 1 == 1,
-                    "{precision:?} {name}: ball {ball} of {near:b}"
-                );
+                let found = near >> ball & 1 == 1;
+                assert!(found, "{precision:?} {name}: ball {ball} of {near:b}");
             }
         }
         // No more is asked than comes near: rays past all balls ask none.

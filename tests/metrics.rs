@@ -11,10 +11,8 @@ const R: [f64; 4] = [1.0, 1.0, 4.0, 2.0];
 #[track_caller]
 fn close(found: f64, expected: f64) {
     let tolerance = 8.0 * f64::EPSILON * expected.abs().max(1.0);
-    assert!(
-        (found - expected).abs() <= tolerance,
-        "{found} instead of {expected}"
-    );
+    let off = (found - expected).abs();
+    assert!(off <= tolerance, "{found} instead of {expected}");
 }
 
 #[test]

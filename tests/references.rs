@@ -53,15 +53,11 @@ fn seed() -> u64 {
 
 #[test]
 fn references_are_of_the_scenes_as_they_are() {
-    let stale: Vec<String> = references()
-        .iter()
-        .filter(|(_, path)| freshness(&Side::read(path).unwrap(), root()) != Freshness::Fresh)
-        .map(|(name, _)| name.clone())
-        .collect();
-    assert!(
-        stale.is_empty(),
-        "stale references, to be made again with tools/reference.py: {stale:?}"
-    );
+    let fresh = |path: &Path| freshness(&Side::read(path).unwrap(), root()) == Freshness::Fresh;
+    let mut stale = references();
+    stale.retain(|(_, path)| !fresh(path));
+    let advice = "stale references, to be made again with tools/reference.py";
+    assert!(stale.is_empty(), "{advice}: {stale:?}");
 }
 
 #[test]
