@@ -9,7 +9,6 @@
 
 mod columns;
 pub mod fields;
-pub mod fresnel;
 pub mod functions;
 pub mod intervals;
 pub mod lights;

@@ -81,12 +81,10 @@ fn angle(constants: &mut Consts, y: f64, x: f64) -> Option<BigFloat> {
         return Some(upright.sub(&rest, p, NEAREST));
     }
     let rest = big(y).div(&big(x), p, NEAREST).atan(p, NEAREST, constants);
-    Some(if x > 0.0 {
-        rest
-    } else if y >= 0.0 {
-        rest.add(&pi, p, NEAREST)
-    } else {
-        rest.sub(&pi, p, NEAREST)
+    Some(match x > 0.0 {
+        true => rest,
+        false if y >= 0.0 => rest.add(&pi, p, NEAREST),
+        false => rest.sub(&pi, p, NEAREST),
     })
 }
 
@@ -125,14 +123,8 @@ fn operands(function: Function, source: &mut Source) -> [[f64; 2]; 2] {
     };
     let b = around(20.0);
     let sorted = |[a, b]: [f64; 2]| if a <= b { [a, b] } else { [b, a] };
-    let trigonometric = matches!(
-        function,
-        Function::Sine
-            | Function::Cosine
-            | Function::SineThin
-            | Function::CosineThin
-            | Function::Tangent
-    );
+    use Function::{Cosine, CosineThin, Sine, SineThin, Tangent};
+    let trigonometric = matches!(function, Sine | Cosine | SineThin | CosineThin | Tangent);
     if trigonometric && source.below(4) == 0 {
         // Near a multiple of π/2, up to the largest angle that is reduced and a little more.
         let bits = source.below(21);

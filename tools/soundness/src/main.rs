@@ -1,5 +1,5 @@
 //! Checks the intervals of etalon as built here, on every instruction set of this machine: the
-//! arithmetic exactly, by error-free transformations, the functions against 192 bits.
+//! arithmetic by exact numbers, the functions against 192 bits.
 
 mod arithmetic;
 mod exact;

@@ -209,9 +209,8 @@ pub struct Result {
 
 impl Result {
     pub fn all(&self) -> Score {
-        self.scores
-            .iter()
-            .fold(Score::default(), |a, b| a.joined(*b))
+        let scores = self.scores.into_iter();
+        scores.fold(Score::default(), Score::joined)
     }
 }
 
