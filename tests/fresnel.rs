@@ -2,7 +2,7 @@
 
 use etalon::inside::light::{DirectionalLight, LightShape, PointLight};
 use etalon::inside::material::fresnel::{conductor, dielectric_reflectance};
-use etalon_doors::fresnel::dielectric;
+use etalon_doors::functions::dielectric;
 use serde_json::Value;
 
 use crate::lanes_support::{PRECISIONS, Precision, everywhere};

@@ -170,10 +170,9 @@ pub fn rendered(scene: &Scene, plan: &Plan) -> Rendered {
 /// The bits of every pixel's X, Y, Z and of their standard errors.
 pub fn pixel_bits(rendered: &Rendered) -> Vec<[[u64; 3]; 2]> {
     let bits = |xyz: [f64; 3]| xyz.map(f64::to_bits);
-    let pixels = rendered.xyz();
-    let pixels = pixels.iter();
+    let pixels = rendered.xyz().into_iter();
     pixels
-        .map(|e| [bits(e.mean), bits(e.standard_error)])
+        .map(|e| [e.mean, e.standard_error].map(bits))
         .collect()
 }
 
@@ -184,6 +183,11 @@ pub fn from_zero(origin: DVec3, direction: DVec3) -> Query {
         t_min: 0.0,
         t_max: f64::INFINITY,
     }
+}
+
+/// An object of a scene file; shape and transforms as they are written.
+pub fn object(shape: &str, material: &str, transform: &str) -> String {
+    format!("[[object]]\nshape = {shape}\nmaterial = \"{material}\"\ntransform = [{transform}]\n")
 }
 
 /// A surface within the cube [−half, half]³.
