@@ -14,7 +14,7 @@ use etalon::inside::shape::ladder::{Ladder, ScaledRay};
 use glam::DVec3;
 
 use crate::lanes_support::on_each;
-use crate::oracle_support::{Row, number, ray, rows, shapes};
+use crate::oracle_support::{Row, number, query, rows, shapes};
 use crate::support::from_zero;
 
 /// Outcome with t in units of the ray's direction.
@@ -45,14 +45,6 @@ fn written(text: &str, from: DVec3, direction: DVec3) -> Outcome {
 fn is_at(outcome: Outcome, t: f64, slack: f64) -> bool {
     matches!(outcome, Outcome::Found(root)
         if root.enclosure[0] - slack <= t && t <= root.enclosure[1] + slack)
-}
-
-fn query(row: &Row) -> Query {
-    Query {
-        ray: ray(row),
-        t_min: number(row, "tmin"),
-        t_max: f64::INFINITY,
-    }
 }
 
 /// Runs oracle rays; returns how many stay undecided. Found must hold the true t, which is given with

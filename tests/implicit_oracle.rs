@@ -8,17 +8,16 @@ use std::collections::{BTreeMap, HashMap};
 use etalon::inside::field::normal::SHARP;
 use etalon::inside::math::affine::Affine;
 use etalon::inside::scene::FinderChoice;
-use etalon::inside::shape::Query;
-use etalon::inside::shape::Tally;
 use etalon::inside::shape::implicit::certified::{
     Answers, Certified, Effort, Packet, WIDTH, Workspace,
 };
 use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitHit, PlacedImplicit};
 use etalon::inside::shape::ladder::Ladder;
+use etalon::inside::shape::{Query, Tally};
 use etalon::{Instructions, Tier};
 use etalon_doors::shapes::without_bounds;
 
-use crate::oracle_support::{Row, number, ray, rows, shapes, vector};
+use crate::oracle_support::{OracleShape, Row, number, query, ray, rows, shapes, vector};
 use crate::support::{from_zero, implicit};
 
 /// A surface in both forms, and half its cube's edge.
@@ -31,7 +30,7 @@ struct Surface {
 type Surfaces = BTreeMap<String, Surface>;
 
 fn surfaces(finder: FinderChoice) -> Surfaces {
-    let surface = |shape: crate::oracle_support::OracleShape| {
+    let surface = |shape: OracleShape| {
         let half = shape.half_width;
         let implicit = implicit(shape.field, half, finder);
         let (tape, to_world) = (&implicit.field.tape, &Affine::IDENTITY);
@@ -45,14 +44,6 @@ fn surfaces(finder: FinderChoice) -> Surfaces {
         (shape.name, surface)
     };
     shapes().into_iter().map(surface).collect()
-}
-
-fn query(row: &Row) -> Query {
-    Query {
-        ray: ray(row),
-        t_min: number(row, "tmin"),
-        t_max: f64::INFINITY,
-    }
 }
 
 /// Rays in the lanes of a packet.

@@ -3,8 +3,10 @@
 use std::collections::HashMap;
 
 use etalon::inside::math::affine::Affine;
-use etalon::inside::shape::{Placed, Ray, ShapeKind};
+use etalon::inside::shape::{Placed, Query, Ray, ShapeKind};
 use glam::DVec3;
+
+use crate::support::from_zero;
 
 #[path = "../tools/method/src/finders/shapes.rs"]
 mod shapes;
@@ -49,6 +51,14 @@ pub fn ray(row: &Row) -> Ray {
     Ray {
         origin: vector(row, ["ox", "oy", "oz"]),
         direction: vector(row, ["dx", "dy", "dz"]),
+    }
+}
+
+/// What a ray of `implicit.csv` asks.
+pub fn query(row: &Row) -> Query {
+    Query {
+        t_min: number(row, "tmin"),
+        ..from_zero(ray(row).origin, ray(row).direction)
     }
 }
 

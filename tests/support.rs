@@ -120,6 +120,14 @@ pub fn words(command: &str) -> Vec<&str> {
     command.split(' ').collect()
 }
 
+/// The lines of a table, each of N cells with bars between them.
+pub fn cells<const N: usize>(table: &str) -> impl Iterator<Item = [&str; N]> {
+    table.trim().lines().map(|line| {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        cells.try_into().unwrap()
+    })
+}
+
 /// The names of the files in a folder.
 pub fn files(folder: &Path) -> BTreeSet<String> {
     let entries = std::fs::read_dir(folder).unwrap();
