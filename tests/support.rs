@@ -188,10 +188,19 @@ pub fn pixel_bits(rendered: &Rendered) -> Vec<[[u64; 3]; 2]> {
 /// A question about the first hit with t ≥ 0.
 pub fn from_zero(origin: DVec3, direction: DVec3) -> Query {
     Query {
-        ray: Ray { origin, direction },
+        ray: ray(origin, direction),
         t_min: 0.0,
         t_max: f64::INFINITY,
     }
+}
+
+pub fn ray(origin: DVec3, direction: DVec3) -> Ray {
+    Ray { origin, direction }
+}
+
+/// The cube [−half, half]³ by its corners.
+pub fn cube(half: f64) -> [DVec3; 2] {
+    [DVec3::splat(-half), DVec3::splat(half)]
 }
 
 /// A surface within the cube [−half, half]³.
@@ -199,7 +208,7 @@ pub fn implicit(field: impl Into<Arc<Expression>>, half: f64, finder: FinderChoi
     Implicit {
         name: None,
         field: field.into(),
-        inside: [DVec3::splat(-half), DVec3::splat(half)],
+        inside: cube(half),
         closed: false,
         finder,
         steps: 256,
