@@ -12,7 +12,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::Value;
 
-use crate::support::{Finished, Folder, assert_says};
+use crate::support::{Finished, Folder, assert_says, words};
 use crate::truth_file::{list, number};
 
 /// Edge of the pictures, pixels.
@@ -88,10 +88,6 @@ fn set(picture: &mut Picture, name: &str, value: Attribute) {
     picture.attributes.push((name.to_owned(), value));
 }
 
-fn text(text: &str) -> Attribute {
-    Attribute::Text(text.to_owned())
-}
-
 /// Runs the command on two pictures in a folder with a scene file.
 fn compare(a: &Picture, b: Option<&Picture>, arguments: &[&str]) -> (Finished, Folder) {
     let folder = Folder::new(SCENE);
@@ -129,16 +125,11 @@ fn honest_pictures_are_consistent() {
 #[test]
 fn a_bias_of_all_or_of_a_block_is_seen() {
     let b = HONEST.seed(2).picture(true);
-    let all = Drawn {
-        factor: 1.02,
-        ..HONEST
-    };
+    let [mut all, mut block] = [HONEST; 2];
+    all.factor = 1.02;
     let words = ["NOT consistent", "the image mean is off by +"];
     expect(&all.picture(false), &b, 1, &words);
-    let block = Drawn {
-        block: 0.95,
-        ..HONEST
-    };
+    block.block = 0.95;
     let words = ["the block of 8x8 pixels at 0,8 is off by"];
     expect(&block.picture(false), &b, 1, &words);
 }
@@ -146,10 +137,8 @@ fn a_bias_of_all_or_of_a_block_is_seen() {
 /// Error bars that are too small show in the distribution of the blocks, not in their means.
 #[test]
 fn dishonest_error_bars_are_seen() {
-    let told = Drawn {
-        told: 0.5,
-        ..HONEST
-    };
+    let mut told = HONEST;
+    told.told = 0.5;
     let judged = judge(&told.seed(3).side(), &told.seed(4).side(), LEVEL).unwrap();
     let mut rejected = judged.channels.iter().flat_map(|c| &c.rejected);
     assert!(rejected.any(|words| words.contains("distributed")));
@@ -167,10 +156,8 @@ fn level_and_power_are_as_stated() {
     assert!((3.0..37.0).contains(&alarms), "{alarms}");
     let smallest = judged(HONEST, HONEST.seed(2)).channels[0].smallest_caught;
     let runs = 100;
-    let biased = Drawn {
-        factor: 1.0 + smallest,
-        ..HONEST
-    };
+    let mut biased = HONEST;
+    biased.factor = 1.0 + smallest;
     let is_caught = |run: &u64| {
         let judged = judged(biased.seed(1000 + 2 * run), HONEST.seed(1001 + 2 * run));
         let mut rejected = judged.channels[0].rejected.iter();
@@ -210,10 +197,8 @@ fn a_band_that_is_black_in_both_pictures_is_said_to_be() {
     };
     let (said, _) = compare(&dark(1), Some(&dark(2)), &[]);
     assert_eq!(said.code, Some(0), "{said:?}");
-    assert_says(
-        &said.out,
-        &["black in both pictures", "undefined", "consistent"],
-    );
+    let words = ["black in both pictures", "undefined", "consistent"];
+    assert_says(&said.out, &words);
     assert!(!said.out.contains("NaN"), "{said:?}");
     assert_eq!(said.out.matches("black").count(), 1, "{said:?}");
     // Black in one picture only is a difference.
@@ -233,13 +218,7 @@ fn json_holds_everything() {
     let names: Vec<&str> = channels.map(|c| c["channel"].as_str().unwrap()).collect();
     assert_eq!(names, ["R", "G", "B", channel_name(450.0).as_str()]);
     let metrics = &json["channels"][0]["metrics"];
-    for name in [
-        "mean_error",
-        "relative_mean_error",
-        "rmse",
-        "relmse",
-        "smape",
-    ] {
+    for name in words("mean_error relative_mean_error rmse relmse smape") {
         assert!(metrics[name]["value"].is_number(), "{name}");
         assert!(metrics[name]["standard_error"].is_number(), "{name}");
     }
@@ -259,9 +238,7 @@ fn what_cannot_be_compared_is_said() {
     // One channel of ones, but for a pixel.
     let ones = |edge: usize, name: &str| {
         let mut picture = Picture::new(edge, edge);
-        picture
-            .channels
-            .push(Channel::float(name, vec![1.0; edge * edge]));
+        picture.channels = vec![Channel::float(name, vec![1.0; edge * edge])];
         picture
     };
     refused(&ones(4, "R"), &["a.exr has 32x32 pixels and b.exr has 4x4"]);
@@ -294,6 +271,7 @@ fn what_cannot_be_compared_is_said() {
 fn stale_references_and_other_scenes_are_told() {
     let mut a = HONEST.picture(false);
     let mut b = HONEST.seed(2).picture(true);
+    let text = |text: &str| Attribute::Text(text.to_owned());
     let of = |picture: &mut Picture, hash: &str| {
         set(picture, "sceneFile", text("scene.toml"));
         set(picture, "sceneHash", text(hash));
@@ -348,8 +326,7 @@ fn p_values_are_students() {
     let judged = judge(&HONEST.side(), &HONEST.seed(2).side(), LEVEL).unwrap();
     for channel in &judged.channels {
         let score = channel.relative_bias / channel.standard_error;
-        let p = student::two_sided(score, channel.freedom);
-        let found = channel.p_value;
+        let (found, p) = (channel.p_value, student::two_sided(score, channel.freedom));
         // Rounding of single precision is allowed for, a millionth beside an error of 0.15 %.
         assert!((found - p).abs() < 0.01, "{found} and {p}");
     }

@@ -478,7 +478,7 @@ fn read(shape: &str, finder: Option<&str>) -> Result<(String, Implicit), Box<Dia
     }
 }
 
-fn implicit_of(shape: Shape) -> Implicit {
+pub fn implicit_of(shape: Shape) -> Implicit {
     match shape {
         Shape::Implicit(implicit) => implicit,
         other => panic!("{other:?}"),

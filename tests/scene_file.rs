@@ -6,7 +6,7 @@ use etalon::inside::declare::Value;
 use etalon::inside::light::SourceKind;
 use etalon::inside::material::MaterialKind;
 use etalon::inside::math::affine::Affine;
-use etalon::inside::scene::{self, Projection, ProjectionKind, Shape, Sides, Surface};
+use etalon::inside::scene::{self, Projection, ProjectionKind, Sides, Surface};
 use etalon::inside::spectrum::Spectrum;
 use etalon::inside::spectrum::ior::{RefractiveIndex, glass_names, metal_names, named_metal};
 use etalon::{Diagnostic, Origin, Overrides, Scene, SceneError};
@@ -14,7 +14,8 @@ use glam::DVec3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::support::{Folder, files};
+use crate::implicit_expression::implicit_of;
+use crate::support::{Folder, cube, files};
 
 const GOOD: &str = r#"title = "a good file"
 environment = { name = "D65", scale = 2 }
@@ -75,12 +76,12 @@ fn parse(text: &str) -> Result<Scene, SceneError> {
 }
 
 fn parse_with(text: &str, panel: Option<&str>, set: &[(&str, &str)]) -> Result<Scene, SceneError> {
+    let set = set
+        .iter()
+        .map(|(key, value)| ((*key).to_owned(), (*value).to_owned()));
     let options = Overrides {
         panel: panel.map(str::to_owned),
-        set: set
-            .iter()
-            .map(|(key, value)| ((*key).to_owned(), (*value).to_owned()))
-            .collect(),
+        set: set.collect(),
         finder: None,
     };
     scene::parse("test.toml", text, Path::new(""), &options)
@@ -116,16 +117,15 @@ fn compare(marked: &str, message: &str, suggestion: Option<&str>) -> Result<(), 
         expected: found.expected.clone(),
         suggestion: suggestion.map(str::to_owned),
     };
-    if found == wanted && found.expected.is_some() {
-        return Ok(());
-    }
-    Err(format!("found\n{found}\nwanted\n{wanted}\n"))
+    let right = found == wanted && found.expected.is_some();
+    right
+        .then_some(())
+        .ok_or_else(|| format!("found\n{found}\nwanted\n{wanted}\n"))
 }
 
-fn check(marked: &str, message: &str, suggestion: Option<&str>) {
-    if let Err(difference) = compare(marked, message, suggestion) {
-        panic!("{difference}");
-    }
+#[track_caller]
+fn check(marked: &str, message: &str) {
+    compare(marked, message, None).unwrap_or_else(|difference| panic!("{difference}"));
 }
 
 #[test]
@@ -279,26 +279,18 @@ fn every_kind_of_mistake_is_shown_with_its_place() {
         ("title = \"a good file\"", "title = \"a good file«»", "invalid basic string", None),
         ("fov = 40", "fov = 40\n«fov» = 41", "duplicate key", None),
     ];
-    let differences: Vec<String> = cases
-        .iter()
-        .filter_map(|(passage, replacement, message, suggestion)| {
-            compare(&changed(passage, replacement), message, *suggestion).err()
-        })
-        .collect();
+    let difference = |(passage, replacement, message, suggestion): &(&str, &str, &str, _)| {
+        compare(&changed(passage, replacement), message, *suggestion).err()
+    };
+    let differences: Vec<String> = cases.iter().filter_map(difference).collect();
     assert!(differences.is_empty(), "{}", differences.join("\n"));
-    check(
-        &changed("{ checkerboard", "«{ checkerboard").replace("], cell = 0.5 }", "] }»"),
-        "materials.floor.cell is missing",
-        None,
-    );
-    check(
-        &changed("spp = 128", "spp = 8").replace("replicates = 16", "replicates = «16»"),
-        "image.replicates is 16, but image.spp is 8",
-        None,
-    );
-    check("«»", "camera is missing", None);
-    check("a = [1,«»", "unclosed array", None);
-    check("camera = «3»\n", "camera is an integer", None);
+    let floor = changed("{ checkerboard", "«{ checkerboard").replace("], cell = 0.5 }", "] }»");
+    check(&floor, "materials.floor.cell is missing");
+    let few = changed("spp = 128", "spp = 8").replace("replicates = 16", "replicates = «16»");
+    check(&few, "image.replicates is 16, but image.spp is 8");
+    check("«»", "camera is missing");
+    check("a = [1,«»", "unclosed array");
+    check("camera = «3»\n", "camera is an integer");
 }
 
 #[test]
@@ -328,11 +320,8 @@ fn messages_look_like_those_of_rustc() {
 
 #[test]
 fn long_lines_are_cut_and_control_characters_are_not_shown() {
-    let text = format!(
-        "title = \"{}\" # \u{9b}\nx{} = 1",
-        "é".repeat(9000),
-        "y".repeat(9000)
-    );
+    let [title, key] = ["é", "y"].map(|letter| letter.repeat(9000));
+    let text = format!("title = \"{title}\" # \u{9b}\nx{key} = 1");
     let found = diagnostic(parse(&text), "long");
     assert!(found.excerpt.chars().count() <= 160);
     assert!(found.indent + found.width <= 160);
@@ -346,7 +335,10 @@ fn a_good_file_is_read_as_written() {
     let scene = parse(GOOD).unwrap();
     assert_eq!(scene.camera.from, DVec3::new(0.0, 1.2, 4.0));
     assert_eq!(scene.camera.up, DVec3::Y);
-    assert_eq!(scene.camera.projection, perspective(40.0));
+    assert_eq!(
+        scene.camera.projection,
+        projection(ProjectionKind::Perspective, 40.0)
+    );
     assert_eq!(scene.camera.lens.unwrap().focus, 10.77);
     assert_eq!(scene.image.size, [700, 500]);
     assert_eq!(scene.image.max_depth, Some(32));
@@ -362,34 +354,30 @@ fn a_good_file_is_read_as_written() {
         k: Spectrum::Constant(3.0),
     };
     for (place, index) in [(2, named_metal("Ag").unwrap()), (4, measured)] {
-        let surface = &scene.materials[place].value.surface;
-        assert_eq!(*surface, conductor(index));
+        assert_eq!(scene.materials[place].value.surface, conductor(index));
     }
     assert_eq!(scene.objects[0].name, "box");
     assert_eq!(scene.objects[1].name, "sphere #1");
     assert_eq!(scene.objects[1].value.material, 5);
     assert_eq!(scene.objects[1].value.size, DVec3::splat(0.5));
     assert_eq!(scene.lights[0].kind, SourceKind::Point);
-    assert_eq!(
-        scene.lights[0].values[0],
-        Value::Point(DVec3::new(0.0, 5.0, 0.0))
-    );
+    let point = Value::Point(DVec3::new(0.0, 5.0, 0.0));
+    assert_eq!(scene.lights[0].values[0], point);
     assert_eq!(scene.source.text, GOOD);
     assert_eq!(scene.panel, None);
 }
 
-fn perspective(fov: f64) -> Projection {
-    Projection {
-        kind: ProjectionKind::Perspective,
-        value: fov,
-    }
+fn projection(kind: ProjectionKind, value: f64) -> Projection {
+    Projection { kind, value }
+}
+
+fn surface(kind: MaterialKind, value: Value) -> Surface {
+    let values = vec![value];
+    Surface { kind, values }
 }
 
 fn conductor(index: RefractiveIndex) -> Surface {
-    Surface {
-        kind: MaterialKind::Conductor,
-        values: vec![Value::Index(index)],
-    }
+    surface(MaterialKind::Conductor, Value::Index(index))
 }
 
 #[test]
@@ -401,7 +389,10 @@ fn panels_are_laid_over_the_file() {
     assert_eq!(a.panel.as_deref(), Some("a"));
     // The mirror takes the place of the diffuse surface.
     let b = parse_with(GOOD, Some("b"), &[]).unwrap();
-    assert_eq!(b.camera.projection, perspective(20.0));
+    assert_eq!(
+        b.camera.projection,
+        projection(ProjectionKind::Perspective, 20.0)
+    );
     assert!(b.camera.lens.is_some());
     let aluminium = conductor(named_metal("Al").unwrap());
     assert_eq!(b.materials[0].value.surface, aluminium);
@@ -434,21 +425,15 @@ fn set_lays_values_over_the_file_and_the_panel() {
     assert_eq!(scene.image.size, [3, 4]);
     assert_eq!(scene.objects[0].value.material, 2);
     assert_eq!(scene.environment, Some(Spectrum::Constant(0.25)));
-    let mirror = Surface {
-        kind: MaterialKind::Mirror,
-        values: vec![Value::Spectrum(Spectrum::Constant(0.5))],
-    };
-    assert_eq!(scene.materials[0].value.surface, mirror);
-    let no_lens = parse_with(GOOD, None, &[("camera.lens.radius", "0")]).unwrap();
-    assert_eq!(no_lens.camera.lens, None);
-    let parallel = parse_with(GOOD, None, &[("camera.orthographic", "2")]).unwrap();
+    let half = Value::Spectrum(Spectrum::Constant(0.5));
     assert_eq!(
-        parallel.camera.projection,
-        Projection {
-            kind: ProjectionKind::Orthographic,
-            value: 2.0
-        }
+        scene.materials[0].value.surface,
+        surface(MaterialKind::Mirror, half)
     );
+    let camera = |key, value| parse_with(GOOD, None, &[(key, value)]).unwrap().camera;
+    assert_eq!(camera("camera.lens.radius", "0").lens, None);
+    let parallel = projection(ProjectionKind::Orthographic, 2.0);
+    assert_eq!(camera("camera.orthographic", "2").projection, parallel);
 
     #[rustfmt::skip]
     let cases = [
@@ -497,14 +482,17 @@ fn quarter_turns_are_exact() {
         let y = [[c, 0.0, s, 0.0], [0.0, 1.0, 0.0, 0.0], [m, 0.0, c, 0.0]];
         let z = [[c, m, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
         for (name, axis, rows) in [
-            ("x", "[3, 0, 0]", x),
-            ("y", "[0, 3, 0]", y),
-            ("z", "[0, 0, 3]", z),
+            ("x", [3, 0, 0], x),
+            ("y", [0, 3, 0], y),
+            ("z", [0, 0, 3], z),
         ] {
-            let plain = format!("[{{ rotate_{name} = {degrees} }}]");
-            assert_eq!(bits(&placed("\"cube\"", &plain)), bits(&Affine { rows }));
-            let about = format!("[{{ rotate = {{ axis = {axis}, angle = {degrees}.0 }} }}]");
-            assert_eq!(bits(&placed("\"cube\"", &about)), bits(&Affine { rows }));
+            for turn in [
+                format!("rotate_{name} = {degrees}"),
+                format!("rotate = {{ axis = {axis:?}, angle = {degrees}.0 }}"),
+            ] {
+                let turned = placed("\"cube\"", &format!("[{{ {turn} }}]"));
+                assert_eq!(bits(&turned), bits(&Affine { rows }), "{turn}");
+            }
         }
     }
     for (angle, row, half) in [(210, 1, -0.5), (-60, 0, 0.5)] {
@@ -555,7 +543,7 @@ fn singular_is_decided_exactly() {
         "[[94906267, 94906265, 3, 0], [94906269, 94906264, 7, 0], [189812536, 189812529, 10, 0]]",
     ] {
         let text = changed(TRANSFORM, &format!("«[{{ matrix = {matrix} }}]»"));
-        check(&text, "the object's matrix is singular", None);
+        check(&text, "the object's matrix is singular");
     }
 }
 
@@ -583,12 +571,9 @@ fn sizes_and_defaults_of_shapes() {
         assert_eq!(placed, Affine::scale(DVec3::from_array(size)), "{shape}");
     }
     let heart = "{ implicit = \"heart\", steps = 7 }";
-    let scene = parse(&changed("{ cube = { side = 2 } }", heart)).unwrap();
-    let Shape::Implicit(heart) = &scene.objects[0].value.shape else {
-        panic!("{:?}", scene.objects[0].value.shape);
-    };
-    assert_eq!(heart.inside, [DVec3::splat(-1.5), DVec3::splat(1.5)]);
-    assert_eq!(heart.steps, 7);
+    let mut scene = parse(&changed("{ cube = { side = 2 } }", heart)).unwrap();
+    let heart = implicit_of(scene.objects.remove(0).value.shape);
+    assert_eq!((heart.inside, heart.steps), (cube(1.5), 7));
 }
 
 #[test]
@@ -598,10 +583,8 @@ fn spectra_in_every_form() {
         let scene = parse(&text).unwrap();
         scene.lights[0].spectrum().unwrap().clone()
     };
-    let lamp = Spectrum::Blackbody {
-        kelvin: 3000.0,
-        scale: 1.0,
-    };
+    let (kelvin, scale) = (3000.0, 1.0);
+    let lamp = Spectrum::Blackbody { kelvin, scale };
     let rgb = Spectrum::rgb_emission([0.5, 1.0, 1.5]).unwrap();
     for (form, wanted) in [
         ("\"E\"", Spectrum::Constant(1.0)),
@@ -612,11 +595,8 @@ fn spectra_in_every_form() {
     ] {
         assert_eq!(spectrum(form), wanted, "{form}");
     }
-    let Spectrum::Table(table) = spectrum("\"pale\"") else {
-        panic!("not a table");
-    };
-    assert_eq!(table.nm, [400.0, 500.0, 700.0]);
-    assert_eq!(table.values, [0.1, 0.2, 0.4]);
+    let (nm, values) = ([400.0, 500.0, 700.0], [0.1, 0.2, 0.4]);
+    assert!(matches!(spectrum("\"pale\""), Spectrum::Table(t) if t.nm == nm && t.values == values));
     let day = "environment = { name = \"D65\", scale = 2 }";
     let day = parse(&changed(day, "environment.radiance = 3")).unwrap();
     assert_eq!(day.environment, Some(Spectrum::Constant(3.0)));
@@ -630,11 +610,10 @@ fn data_files_are_found_beside_the_scene() {
     let load = || Scene::load(folder.path("scene.toml"));
 
     csv("# source\nnm,value\n400,0.25\n700,0.5\n");
-    let painted = load().unwrap().materials[1].value.surface.clone();
-    let [Value::Spectrum(Spectrum::Table(table))] = painted.values.as_slice() else {
-        panic!("not a table");
-    };
-    assert_eq!(table.values, [0.25, 0.5]);
+    let painted = &load().unwrap().materials[1].value.surface.values;
+    assert!(
+        matches!(&painted[..], [Value::Spectrum(Spectrum::Table(t))] if t.values == [0.25, 0.5])
+    );
     for (bad, part) in [
         ("", "at least one sample"),
         ("400,0.5\n", "only one sample"),
@@ -682,10 +661,8 @@ fn files_that_cannot_be_scenes() {
 #[test]
 fn the_scenes_that_come_with_the_project_are_valid() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    let scenes = files(&folder)
-        .into_iter()
-        .filter(|name| name.ends_with(".toml"));
-    let scenes: Vec<String> = scenes.collect();
+    let mut scenes = files(&folder);
+    scenes.retain(|name| name.ends_with(".toml"));
     assert!(!scenes.is_empty());
     for name in scenes {
         Scene::load(folder.join(name)).unwrap_or_else(|error| panic!("{error}"));
