@@ -59,11 +59,9 @@ fn attributes() -> Vec<(String, Attribute)> {
         ("seconds", Attribute::Double(0.1)),
         ("single", Attribute::Float(0.1)),
     ];
-    let some = some
-        .map(|(name, value)| (name.to_owned(), value))
-        .into_iter();
-    some.chain((0..15).map(|i| (format!("number{i}"), Attribute::Int(-i))))
-        .collect()
+    let named = |(name, value): (&str, Attribute)| (name.to_owned(), value);
+    let numbers = (0..15).map(|i| (format!("number{i}"), Attribute::Int(-i)));
+    some.into_iter().map(named).chain(numbers).collect()
 }
 
 /// A folder and a place in it.
@@ -152,11 +150,8 @@ fn spectral_layout_follows_the_paper() {
     let read = exr::read(&path).unwrap();
     assert_eq!(attribute(&read, "spectralLayoutVersion"), "1.0");
     assert_eq!(attribute(&read, "emissiveUnits"), "W.m^-2.sr^-1");
-    assert!(
-        [short, long]
-            .iter()
-            .all(|name| read.attribute(name).is_none())
-    );
+    let is_none = |name: &&str| read.attribute(name).is_none();
+    assert!([short, long].iter().all(is_none));
     for (name, values) in [
         (long, [550.0, 0.5]),
         ("standard_error.S0.550,000000nm", [0.25, 0.125]),

@@ -51,11 +51,8 @@ fn departures(plan: &Plan) -> [usize; 2] {
             let start = from.point - DVec3::new(0.0, 0.0, CENTRE);
             let chord = -2.0 * start.dot(to.direction);
             let inward = from.normal.dot(to.direction) < 0.0;
-            let right = if inward {
-                to.object == Some(1) && (to.distance - chord).abs() < 1e-5
-            } else {
-                to.object != Some(1)
-            };
+            let near = (to.distance - chord).abs() < 1e-5;
+            let right = (to.object == Some(1)) == inward && (near || !inward);
             wrong += usize::from(!right);
         }
     }

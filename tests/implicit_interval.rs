@@ -137,10 +137,7 @@ impl Enclosed for Shifted {
         };
         Pieces {
             value: [0, 1].map(|k| std::array::from_fn(|i| value(i)[k])),
-            slope: [
-                from.map(|t| 2.0 * (t - 0.5) - 1e-15),
-                to.map(|t| 2.0 * (t - 0.5) + 1e-15),
-            ],
+            slope: [(from, -1e-15), (to, 1e-15)].map(|(t, off)| t.map(|t| 2.0 * (t - 0.5) + off)),
             broken: 0,
             void: 0,
         }

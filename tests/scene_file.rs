@@ -6,6 +6,7 @@ use etalon::inside::declare::Value;
 use etalon::inside::light::SourceKind;
 use etalon::inside::material::MaterialKind;
 use etalon::inside::math::affine::Affine;
+use etalon::inside::scene::ProjectionKind::{Orthographic, Perspective};
 use etalon::inside::scene::{self, Projection, ProjectionKind, Sides, Surface};
 use etalon::inside::spectrum::Spectrum;
 use etalon::inside::spectrum::ior::{RefractiveIndex, glass_names, metal_names, named_metal};
@@ -335,10 +336,7 @@ fn a_good_file_is_read_as_written() {
     let scene = parse(GOOD).unwrap();
     assert_eq!(scene.camera.from, DVec3::new(0.0, 1.2, 4.0));
     assert_eq!(scene.camera.up, DVec3::Y);
-    assert_eq!(
-        scene.camera.projection,
-        projection(ProjectionKind::Perspective, 40.0)
-    );
+    assert_eq!(scene.camera.projection, projection(Perspective, 40.0));
     assert_eq!(scene.camera.lens.unwrap().focus, 10.77);
     assert_eq!(scene.image.size, [700, 500]);
     assert_eq!(scene.image.max_depth, Some(32));
@@ -389,10 +387,7 @@ fn panels_are_laid_over_the_file() {
     assert_eq!(a.panel.as_deref(), Some("a"));
     // The mirror takes the place of the diffuse surface.
     let b = parse_with(GOOD, Some("b"), &[]).unwrap();
-    assert_eq!(
-        b.camera.projection,
-        projection(ProjectionKind::Perspective, 20.0)
-    );
+    assert_eq!(b.camera.projection, projection(Perspective, 20.0));
     assert!(b.camera.lens.is_some());
     let aluminium = conductor(named_metal("Al").unwrap());
     assert_eq!(b.materials[0].value.surface, aluminium);
@@ -426,13 +421,11 @@ fn set_lays_values_over_the_file_and_the_panel() {
     assert_eq!(scene.objects[0].value.material, 2);
     assert_eq!(scene.environment, Some(Spectrum::Constant(0.25)));
     let half = Value::Spectrum(Spectrum::Constant(0.5));
-    assert_eq!(
-        scene.materials[0].value.surface,
-        surface(MaterialKind::Mirror, half)
-    );
+    let mirror = surface(MaterialKind::Mirror, half);
+    assert_eq!(scene.materials[0].value.surface, mirror);
     let camera = |key, value| parse_with(GOOD, None, &[(key, value)]).unwrap().camera;
     assert_eq!(camera("camera.lens.radius", "0").lens, None);
-    let parallel = projection(ProjectionKind::Orthographic, 2.0);
+    let parallel = projection(Orthographic, 2.0);
     assert_eq!(camera("camera.orthographic", "2").projection, parallel);
 
     #[rustfmt::skip]

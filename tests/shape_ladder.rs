@@ -286,18 +286,9 @@ fn odd_input_is_refused_quietly() {
         let placed = Placed::new(ShapeKind::Cube, &Affine { rows });
         assert_eq!(placed.err(), refused);
     }
-    let (least, most, infinite) = (f64::MIN_POSITIVE, f64::MAX, f64::INFINITY);
-    let extreme = [
-        0.0,
-        5e-324,
-        least,
-        1e-160,
-        1.0,
-        1e160,
-        most,
-        f64::NAN,
-        infinite,
-    ];
+    let [least, most] = [f64::MIN_POSITIVE, f64::MAX];
+    let [nan, infinite] = [f64::NAN, f64::INFINITY];
+    let extreme = [0.0, 5e-324, least, 1e-160, 1.0, 1e160, most, nan, infinite];
     let pairs = extreme
         .iter()
         .flat_map(|a| extreme.iter().map(move |b| (*a, *b)));

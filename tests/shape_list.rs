@@ -20,10 +20,8 @@ fn all(objects: &[Placed]) -> impl Iterator<Item = (usize, &Placed)> {
 #[test]
 fn equal_t_goes_by_priority_then_index() {
     // A cube on a cube of twice the size, seen through the common plane z = 1 from inside.
-    let cubes = [
-        placed(ShapeKind::Cube, 0.5, DVec3::new(0.0, 0.0, 1.5)),
-        placed(ShapeKind::Cube, 1.0, DVec3::ZERO),
-    ];
+    let cube = |scale, z| placed(ShapeKind::Cube, scale, DVec3::Z * z);
+    let cubes = [cube(0.5, 1.5), cube(1.0, 0.0)];
     let up = from_zero(DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.01, 0.03, 0.1));
     for (first, priority) in [(0, [0, 0]), (0, [0, 1]), (1, [1, 0])] {
         let mut tally = Tally::default();
@@ -39,10 +37,8 @@ fn equal_t_goes_by_priority_then_index() {
 #[test]
 fn equal_irrational_t_is_recognised_and_the_smallest_difference_too() {
     // Sphere and cylinder share the circle z = 0; the crossing is irrational.
-    let round = [
-        placed(ShapeKind::Sphere, 1.0, DVec3::ZERO),
-        placed(ShapeKind::Cylinder, 1.0, DVec3::ZERO),
-    ];
+    let unit = |kind, shift| placed(kind, 1.0, shift);
+    let round = [ShapeKind::Sphere, ShapeKind::Cylinder].map(|kind| unit(kind, DVec3::ZERO));
     let flat = from_zero(DVec3::new(-3.0, 0.1, 0.0), DVec3::new(0.7, 0.1, 0.0));
     for first in [0, 1] {
         let winner = |i: usize| u8::from(i != first);
@@ -50,10 +46,8 @@ fn equal_irrational_t_is_recognised_and_the_smallest_difference_too() {
         assert_eq!(index, first);
     }
     // Spheres 2⁻²⁰⁰ apart: whatever the priority, the nearer one is nearer.
-    let spheres = [
-        placed(ShapeKind::Sphere, 1.0, DVec3::ZERO),
-        placed(ShapeKind::Sphere, 1.0, DVec3::X * 2f64.powi(-200)),
-    ];
+    let shifts = [DVec3::ZERO, DVec3::X * 2f64.powi(-200)];
+    let spheres = shifts.map(|shift| unit(ShapeKind::Sphere, shift));
     for (side, first) in [(-3.0, 0), (3.0, 1)] {
         let ray = from_zero(DVec3::new(side, 0.1, 0.2), DVec3::new(-side, 0.05, 0.1));
         let loser = |i: usize| u8::from(i == first);
