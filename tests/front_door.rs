@@ -130,8 +130,7 @@ fn pilots_that_are_stopped_leave_everything_as_it_was() {
 #[test]
 fn words_of_the_library_know_no_command_line() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut files = Vec::new();
-    rust_files(&root.join("src"), &mut files);
+    let mut files = rust_files(&root.join("src"));
     files.retain(|file| !file.starts_with(root.join("src/cli")));
     let flag = |rest: &str| rest.starts_with(|c: char| c.is_ascii_lowercase());
     for file in files {

@@ -141,10 +141,8 @@ fn invented_polynomials_are_isolated_as_they_were_made() {
     let mut random = Pcg64Mcg::seed_from_u64(3);
     let sets = Instructions::all().into_iter();
     let mut workspaces: Vec<Workspace> = sets.map(Workspace::new).collect();
-    let effort = Effort {
-        sharp: true,
-        exact: true,
-    };
+    let (sharp, exact) = (true, true);
+    let effort = Effort { sharp, exact };
     let mut tiers = [0; 3];
     for case in 0..1000 {
         let invented = Invented::new(&mut random);

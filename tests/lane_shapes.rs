@@ -89,12 +89,10 @@ impl Record {
     }
 
     fn assert_sound(&self, what: &str) {
+        let (rays, hits, tightest) = (self.asked, self.hits, self.tightest);
+        let share = 100.0 * self.undecided as f64 / rays as f64;
         println!(
-            "{what}: {} rays, {} hits, {:.2} % undecided, closest to a bound {:.3}",
-            self.asked,
-            self.hits,
-            100.0 * self.undecided as f64 / self.asked as f64,
-            self.tightest,
+            "{what}: {rays} rays, {hits} hits, {share:.2} % undecided, closest to a bound {tightest:.3}"
         );
         let some = self.wrong[..self.wrong.len().min(3)].join("\n");
         assert_eq!(self.wrong.len(), 0, "{what}: such as\n{some}");

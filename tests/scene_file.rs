@@ -347,10 +347,8 @@ fn a_good_file_is_read_as_written() {
     let lamp = &scene.materials[6].value;
     assert_eq!(lamp.surface.kind, MaterialKind::Black);
     assert_eq!(lamp.emission.as_ref().unwrap().sides, Sides::Both);
-    let measured = RefractiveIndex::Complex {
-        n: Spectrum::Constant(0.2),
-        k: Spectrum::Constant(3.0),
-    };
+    let [n, k] = [0.2, 3.0].map(Spectrum::Constant);
+    let measured = RefractiveIndex::Complex { n, k };
     for (place, index) in [(2, named_metal("Ag").unwrap()), (4, measured)] {
         assert_eq!(scene.materials[place].value.surface, conductor(index));
     }

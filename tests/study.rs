@@ -128,11 +128,9 @@ fn without_truth_a_study_renders_its_own_reference() {
     let said = study(&folder, &format!("{GRID} -o out"));
     assert_says(&said, &["rendered by the study itself"]);
     let rows = rows(&folder, "out/study.csv");
-    let best = curves(&rows, Key::Spp)
-        .iter()
-        .flat_map(|curve| curve.points.clone())
-        .map(|point| point.rmse().value)
-        .fold(f64::INFINITY, f64::min);
+    let curves = curves(&rows, Key::Spp);
+    let points = curves.iter().flat_map(|curve| &curve.points);
+    let best = points.fold(f64::INFINITY, |best, point| best.min(point.rmse().value));
     let own = rows[0].reference_rmse;
     // Three times below is what it aims at, from one render of the best point: give or take what
     // 128 pixels and 4 renders leave uncertain of either, less than a quarter.
