@@ -70,10 +70,8 @@ fn disagreement(want: &Row, found: &Row) -> Option<String> {
 
 #[test]
 fn trace_agrees_with_the_oracle_on_every_primitive() {
-    let transforms: HashMap<String, Row> = rows("transforms.csv")
-        .into_iter()
-        .map(|row| (row["transform"].clone(), row))
-        .collect();
+    let named = |row: Row| (row["transform"].clone(), row);
+    let transforms: HashMap<String, Row> = rows("transforms.csv").into_iter().map(named).collect();
     let mut groups: BTreeMap<(String, String), Vec<Row>> = BTreeMap::new();
     for row in rows("primitives.csv") {
         let key = (row["shape"].clone(), row["transform"].clone());
@@ -175,16 +173,14 @@ fn implicit_surfaces_have_their_known_roots() {
     // On the x axis 4x⁴ − 20x² + 17 = 0, at x² = (5 ± √8)/2; the field is positive between ±inner.
     // On the y axis 4y⁴ − 20y² + 17 is the same.
     let [outer, inner] = [1.0, -1.0].map(|sign: f64| ((5.0 + sign * 8.0_f64.sqrt()) / 2.0).sqrt());
-    // The field near the root is known to some 8 rounding errors of its largest term, 80, and has
-    // a slope of 45 or more; the closed form is known to as much.
-    let tolerance = 1e-13;
     let wanted = [3.0 - outer, (1.4 - inner) / 2.0, (4.0 - outer) / 2.0];
     for (row, wanted) in mitchell.iter().zip(wanted) {
-        assert!((number(row, "t") - wanted).abs() < tolerance, "{row:?}");
+        // The field near the root is known to some 8 rounding errors of its largest term, 80, and has
+        // a slope of 45 or more; the closed form is known to as much.
+        assert!((number(row, "t") - wanted).abs() < 1e-13, "{row:?}");
     }
     // The outward normal points out of the solid, which lies between the two.
-    let normals: Vec<&str> = mitchell.iter().map(|row| row["nx"].as_str()).collect();
-    assert_eq!(normals[..2], ["-1.0", "1.0"]);
+    assert_eq!([0, 1].map(|i| &mitchell[i]["nx"]), ["-1.0", "1.0"]);
 
     let heart = trace(&scene(&[surface("heart")]), rays);
     // (x² − 1)³ on the x axis: a triple root where the gradient vanishes. The surface is smooth
@@ -230,7 +226,7 @@ fn the_summary_goes_to_stderr_unless_quiet() {
         "note: ignored columns: foo\n\
          2 rays, 1 hits; questions decided in f64: 2, in double-double: 0, exactly: 0\n"
     );
-    let said = scene.run_with(&[&TRACE[..], &["--quiet"]].concat(), rays);
+    let said = scene.run_with(&words("trace scene.toml --rays - --quiet"), rays);
     assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
 }
 

@@ -158,8 +158,7 @@ fn a_time_limit_gives_the_bits_of_the_count_it_reached() {
 fn strata_need_a_planned_count() {
     let folder = Folder::new(SCENE);
     let strata = ["--sampler", "stratified", "--time", "0.05"];
-    let message = refused(&folder, &strata);
-    assert!(message.contains("--time needs --spp"), "{message}");
+    assert_says(&refused(&folder, &strata), &["--time needs --spp"]);
     let planned = [&strata[..], &["--spp", "1000000"]].concat();
     let (picture, said) = render(&folder, &planned);
     assert!(said.contains(" spp (of strata for 1000000) in "), "{said}");
@@ -232,7 +231,7 @@ fn a_flat_environment_is_1_in_every_bin() {
         }
     }
     let message = refused(&folder, &["--layers", "spectral:300-700:10"]);
-    assert!(message.contains("the bin at 300 nm"), "{message}");
+    assert_says(&message, &["the bin at 300 nm"]);
 }
 
 #[test]
@@ -352,10 +351,9 @@ mod interrupts {
         interrupt(&child);
         let said = Finished::from(child.wait_with_output().unwrap());
         assert_eq!(said.code, Some(0));
-        let said = said.out;
-        assert!(said.contains("interrupted after "), "{said}");
+        assert_says(&said.out, &["interrupted after "]);
         let kept = folder.picture("scene.exr");
-        let counted = render_bits(&folder, &["--spp", reached(&said)]);
+        let counted = render_bits(&folder, &["--spp", reached(&said.out)]);
         assert_eq!(bits(&kept), counted);
     }
 

@@ -8,7 +8,7 @@ use etalon::inside::film::spectral::{self, Bin};
 use etalon::inside::film::{Error, exr, hash, names, png, whole};
 use etalon::{Attribute, Channel, Picture, Values};
 
-use crate::support::{Folder, attribute, value_bits};
+use crate::support::{Folder, assert_says, attribute, value_bits};
 
 /// 19 × 37 pixels: neither is a multiple of ZIP's 16 lines, so that the last block is short.
 const WIDTH: usize = 19;
@@ -236,15 +236,18 @@ fn a_write_that_fails_leaves_the_old_file_and_nothing_else() {
     assert_eq!(fs::read(&path).unwrap(), b"old");
     assert_files(&folder, ["old.exr"]);
 
-    let new = folder.path("new.exr");
-    whole::write(&new, full).unwrap_err();
+    whole::write(&folder.path("new.exr"), full).unwrap_err();
     assert_files(&folder, ["old.exr"]);
 }
 
-/// Whether the directory is what takes no new file.
-fn refuses_files(error: &Error) -> bool {
-    let words = "no file can be created in the directory";
-    matches!(error, Error::Write { .. }) && error.to_string().contains(words)
+/// Probes a place in a directory that takes no new file.
+#[track_caller]
+fn probe_refused(path: &Path) -> String {
+    let error = whole::probe(path).unwrap_err();
+    assert!(matches!(error, Error::Write { .. }), "{error}");
+    let message = error.to_string();
+    assert_says(&message, &["no file can be created in the directory"]);
+    message
 }
 
 #[test]
@@ -259,10 +262,9 @@ fn probing_finds_bad_paths_and_touches_nothing() {
     assert_files(&folder, ["old.exr"]);
 
     let missing = folder.path("missing/new.exr");
-    let error = whole::probe(&missing).unwrap_err();
-    assert!(refuses_files(&error), "{error}");
-    assert!(error.to_string().contains("missing/new.exr"), "{error}");
-    assert!(!error.to_string().contains(".part"), "{error}");
+    let message = probe_refused(&missing);
+    assert_says(&message, &["missing/new.exr"]);
+    assert!(!message.contains(".part"), "{message}");
     assert!(exr::write(&missing, &picture()).is_err());
     assert!(png::write_preview(&missing, 1, 1, &[[0.5; 3]]).is_err());
 
@@ -328,8 +330,7 @@ mod unix {
         fs::set_permissions(folder.path(""), locked).unwrap();
         let superuser = File::create(folder.path("trial")).is_ok();
         if !superuser {
-            let error = whole::probe(&path).unwrap_err();
-            assert!(refuses_files(&error), "{error}");
+            probe_refused(&path);
             assert!(exr::write(&path, &picture()).is_err());
             assert_eq!(fs::read(&path).unwrap(), b"old");
         }
@@ -341,8 +342,7 @@ mod unix {
     #[test]
     fn a_file_system_that_takes_no_files_is_an_error() {
         if Path::new("/proc/self").is_dir() {
-            let error = whole::probe(Path::new("/proc/picture.exr")).unwrap_err();
-            assert!(refuses_files(&error), "{error}");
+            probe_refused(Path::new("/proc/picture.exr"));
         }
     }
 

@@ -300,8 +300,8 @@ fn the_first_mistake_in_the_file_is_the_one_shown() {
     assert_eq!(diagnostic(parse(&text), "spp").message, "image.spp is 0");
     // The object stands before the materials here.
     let text = "[[object]]\nshape = \"spher\"\nmaterial = \"m\"\n[materials]\nm = { diffuse = 2 }";
-    let found = diagnostic(parse(&format!("{text}\n[camera]\n[image]")), "order");
-    assert_eq!(found.line, 2);
+    let text = format!("{text}\n[camera]\n[image]");
+    assert_eq!(diagnostic(parse(&text), "order").line, 2);
 }
 
 #[test]
@@ -456,9 +456,8 @@ fn placed(shape: &str, transform: &str) -> Affine {
     parse(&text).unwrap().objects[0].value.to_world
 }
 
-fn bits(affine: &Affine) -> Vec<u64> {
-    let entries = affine.rows.as_flattened();
-    entries.iter().map(|x| x.to_bits()).collect()
+fn bits(affine: &Affine) -> [[u64; 4]; 3] {
+    affine.rows.map(|row| row.map(f64::to_bits))
 }
 
 #[test]
@@ -497,11 +496,8 @@ fn a_lone_matrix_arrives_bit_for_bit() {
     let matrix = "[[0.1, -0.0, 5e-324, 1e300], [0.30000000000000004, 3, -0.0, -0.0], [1, 2, 7, 8]";
     for end in ["]", ", [0, 0, 0, 1]]"] {
         let affine = placed("\"cube\"", &format!("[{{ matrix = {matrix}{end} }}]"));
-        let rows = [
-            [0.1, -0.0, 5e-324, 1e300],
-            [0.300_000_000_000_000_04, 3.0, -0.0, -0.0],
-            [1.0, 2.0, 7.0, 8.0],
-        ];
+        let middle = [0.300_000_000_000_000_04, 3.0, -0.0, -0.0];
+        let rows = [[0.1, -0.0, 5e-324, 1e300], middle, [1.0, 2.0, 7.0, 8.0]];
         assert_eq!(bits(&affine), bits(&Affine { rows }));
     }
 }
@@ -617,10 +613,7 @@ fn data_files_are_found_beside_the_scene() {
         assert_eq!((found.line, found.column), (17, 17), "{bad:?}");
         assert!(found.message.contains(part), "{}", found.message);
     }
-}
-
-#[test]
-fn a_data_file_that_is_not_there_is_shown_where_it_is_named() {
+    // A file that is not there is shown where it is named.
     let pale = "{ name = \"paint\", scale = 0.5 }";
     let text = changed(pale, "{ csv = \"no/such.csv\" }");
     let found = diagnostic(parse(&text), "csv");
@@ -661,16 +654,11 @@ fn the_scenes_that_come_with_the_project_are_valid() {
 }
 
 #[test]
-fn the_example_of_the_format_reference_is_valid() {
+fn the_format_reference_is_valid_and_names_every_medium() {
     let text = include_str!("../scenes/README.md");
     let (_, rest) = text.split_once("```toml\n").unwrap();
     let (example, _) = rest.split_once("```").unwrap();
     parse(example).unwrap_or_else(|error| panic!("{error}"));
-}
-
-#[test]
-fn the_format_reference_names_every_medium() {
-    let text = include_str!("../scenes/README.md");
     for name in glass_names().chain(metal_names()) {
         assert!(text.contains(&format!("`\"{name}\"`")), "{name}");
     }
