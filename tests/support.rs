@@ -120,6 +120,14 @@ pub fn words(command: &str) -> Vec<&str> {
     command.split(' ').collect()
 }
 
+/// The lines of a table, each of N cells with bars between them.
+pub fn cells<const N: usize>(table: &str) -> impl Iterator<Item = [&str; N]> {
+    table.trim().lines().map(|line| {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        cells.try_into().unwrap()
+    })
+}
+
 /// The names of the files in a folder.
 pub fn files(folder: &Path) -> BTreeSet<String> {
     let entries = std::fs::read_dir(folder).unwrap();
@@ -179,7 +187,7 @@ pub fn pixel_bits(rendered: &Rendered) -> Vec<[[u64; 3]; 2]> {
 /// A question about the first hit with t ≥ 0.
 pub fn from_zero(origin: DVec3, direction: DVec3) -> Query {
     Query {
-        ray: Ray { origin, direction },
+        ray: ray(origin, direction),
         t_min: 0.0,
         t_max: f64::INFINITY,
     }
@@ -190,12 +198,21 @@ pub fn object(shape: &str, material: &str, transform: &str) -> String {
     format!("[[object]]\nshape = {shape}\nmaterial = \"{material}\"\ntransform = [{transform}]\n")
 }
 
+pub fn ray(origin: DVec3, direction: DVec3) -> Ray {
+    Ray { origin, direction }
+}
+
+/// The cube [−half, half]³ by its corners.
+pub fn cube(half: f64) -> [DVec3; 2] {
+    [DVec3::splat(-half), DVec3::splat(half)]
+}
+
 /// A surface within the cube [−half, half]³.
 pub fn implicit(field: impl Into<Arc<Expression>>, half: f64, finder: FinderChoice) -> Implicit {
     Implicit {
         name: None,
         field: field.into(),
-        inside: [DVec3::splat(-half), DVec3::splat(half)],
+        inside: cube(half),
         closed: false,
         finder,
         steps: 256,
