@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use rayon::prelude::*;
 
 use crate::oracle_support::{Row, number, primitive_fault, rows, table, vector};
-use crate::support::{Finished, Folder, words};
+use crate::support::{Finished, Folder, cells, words};
 
 const HEAD: &str = "\
 camera = { from = [0, 0, 5], to = [0, 0, 0], fov = 40 }
@@ -17,6 +17,12 @@ materials.glass = { glass = \"N-BK7\" }
 
 fn object(shape: &str, material: &str, rest: &str) -> String {
     format!("[[object]]\nshape = {shape}\nmaterial = \"{material}\"\n{rest}\n")
+}
+
+/// A plane across the z axis.
+fn plane(z: i32) -> String {
+    let transform = format!("transform = [{{ translate = [0, 0, {z}] }}]");
+    object("{ plane = {} }", "opaque", &transform)
 }
 
 fn scene(objects: &[String]) -> Folder {
@@ -38,17 +44,11 @@ fn trace(folder: &Folder, rays: &str) -> Vec<Row> {
 
 /// A scene of one canonical shape under one matrix, kept bit for bit.
 fn placed(shape: &str, transform: &Row) -> Folder {
-    let row = |i: usize| {
-        let entries = [0, 1, 2, 3].map(|j| format!("{:?}", number(transform, &format!("m{i}{j}"))));
-        format!("[{}]", entries.join(", "))
-    };
-    let matrix = [row(0), row(1), row(2)].join(", ");
-    let shape = match shape {
-        "rect" => "\"rectangle\"".to_owned(),
-        other => format!("\"{other}\""),
-    };
-    let transform = format!("transform = [{{ matrix = [{matrix}] }}]");
-    scene(&[object(&shape, "opaque", &transform)])
+    let entry = |i: usize, j: usize| number(transform, &format!("m{i}{j}"));
+    let matrix = [0, 1, 2].map(|i| [0, 1, 2, 3].map(|j| entry(i, j)));
+    let shape = if shape == "rect" { "rectangle" } else { shape };
+    let transform = format!("transform = [{{ matrix = {matrix:?} }}]");
+    scene(&[object(&format!("{shape:?}"), "opaque", &transform)])
 }
 
 /// What is wrong with the answer to a ray of the oracle.
@@ -62,19 +62,16 @@ fn disagreement(want: &Row, found: &Row) -> Option<String> {
         return primitive_fault(want, Some(hit));
     }
     let values = ["t", "x", "y", "z", "nx", "ny", "nz", "object"];
-    let empty = values.iter().all(|name| found[*name].is_empty());
-    match empty {
-        true => primitive_fault(want, None),
-        false => Some(format!("{id}: a miss with values")),
+    if !values.iter().all(|name| found[*name].is_empty()) {
+        return Some(format!("{id}: a miss with values"));
     }
+    primitive_fault(want, None)
 }
 
 #[test]
 fn trace_agrees_with_the_oracle_on_every_primitive() {
-    let transforms: HashMap<String, Row> = rows("transforms.csv")
-        .into_iter()
-        .map(|row| (row["transform"].clone(), row))
-        .collect();
+    let named = |row: Row| (row["transform"].clone(), row);
+    let transforms: HashMap<String, Row> = rows("transforms.csv").into_iter().map(named).collect();
     let mut groups: BTreeMap<(String, String), Vec<Row>> = BTreeMap::new();
     for row in rows("primitives.csv") {
         let key = (row["shape"].clone(), row["transform"].clone());
@@ -100,14 +97,8 @@ fn trace_agrees_with_the_oracle_on_every_primitive() {
 
 #[test]
 fn numbers_and_names_go_through_unchanged() {
-    let scene = scene(&[
-        object("\"sphere\"", "opaque", "name = 'a \"b\", c'"),
-        object(
-            "{ plane = {} }",
-            "opaque",
-            "transform = [{ translate = [0, 0, -4] }]",
-        ),
-    ]);
+    let sphere = object("\"sphere\"", "opaque", "name = 'a \"b\", c'");
+    let scene = scene(&[sphere, plane(-4)]);
     let found = trace(
         &scene,
         "tmax,dx,dy,dz,ox,oy,oz,id\n\
@@ -149,8 +140,7 @@ fn limits_are_open_but_for_zero() {
 
 #[test]
 fn opaque_comes_before_glass_and_then_the_lower_index() {
-    let sphere =
-        |material: &str, name: &str| object("\"sphere\"", material, &format!("name = \"{name}\""));
+    let sphere = |material, name| object("\"sphere\"", material, &format!("name = {name:?}"));
     let ray = "ox,oy,oz,dx,dy,dz\n1e-3,2e-3,3,0,1e-3,-1";
     let first = |objects: &[String]| trace(&scene(objects), ray)[0]["object"].clone();
     let (glass, wall) = (sphere("glass", "glass"), sphere("opaque", "wall"));
@@ -183,16 +173,14 @@ fn implicit_surfaces_have_their_known_roots() {
     // On the x axis 4x⁴ − 20x² + 17 = 0, at x² = (5 ± √8)/2; the field is positive between ±inner.
     // On the y axis 4y⁴ − 20y² + 17 is the same.
     let [outer, inner] = [1.0, -1.0].map(|sign: f64| ((5.0 + sign * 8.0_f64.sqrt()) / 2.0).sqrt());
-    // The field near the root is known to some 8 rounding errors of its largest term, 80, and has
-    // a slope of 45 or more; the closed form is known to as much.
-    let tolerance = 1e-13;
     let wanted = [3.0 - outer, (1.4 - inner) / 2.0, (4.0 - outer) / 2.0];
     for (row, wanted) in mitchell.iter().zip(wanted) {
-        assert!((number(row, "t") - wanted).abs() < tolerance, "{row:?}");
+        // The field near the root is known to some 8 rounding errors of its largest term, 80, and has
+        // a slope of 45 or more; the closed form is known to as much.
+        assert!((number(row, "t") - wanted).abs() < 1e-13, "{row:?}");
     }
     // The outward normal points out of the solid, which lies between the two.
-    let normals: Vec<&str> = mitchell.iter().map(|row| row["nx"].as_str()).collect();
-    assert_eq!(normals[..2], ["-1.0", "1.0"]);
+    assert_eq!([0, 1].map(|i| &mitchell[i]["nx"]), ["-1.0", "1.0"]);
 
     let heart = trace(&scene(&[surface("heart")]), rays);
     // (x² − 1)³ on the x axis: a triple root where the gradient vanishes. The surface is smooth
@@ -214,35 +202,19 @@ fn implicit_surfaces_move_with_their_matrix() {
     let implicit = "{ implicit = \"heart\" }";
     let plain = scene(&[object(implicit, "opaque", "")]);
     let matrix = "transform = [{ matrix = [[0, 4, 0, 8], [0.5, 0, 0, -2], [0, 0, -2, 1]] }]";
-    let moved = scene(&[
-        object(implicit, "opaque", matrix),
-        object(
-            "{ plane = {} }",
-            "opaque",
-            "transform = [{ translate = [0, 0, 64] }]",
-        ),
-    ]);
-    let heading = "ox,oy,oz,dx,dy,dz\n";
-    let here = trace(
-        &plain,
-        &format!("{heading}0.25,0.125,3,0.0625,0,-1\n3,3,3,0,1,-1"),
-    );
-    let there = trace(
-        &moved,
-        &format!("{heading}8.5,-1.875,-5,0,0.03125,2\n20,-0.5,-5,4,0,2"),
-    );
+    let moved = scene(&[object(implicit, "opaque", matrix), plane(64)]);
+    let asked = |scene, rays: &str| trace(scene, &format!("ox,oy,oz,dx,dy,dz\n{rays}"));
+    let here = asked(&plain, "0.25,0.125,3,0.0625,0,-1\n3,3,3,0,1,-1");
+    let there = asked(&moved, "8.5,-1.875,-5,0,0.03125,2\n20,-0.5,-5,4,0,2");
     assert_eq!(here[0]["hit"], "1");
     assert_eq!(here[0]["t"], there[0]["t"]);
-    assert_eq!(
-        (here[1]["hit"].as_str(), there[1]["object"].as_str()),
-        ("0", "plane #1")
-    );
+    assert_eq!(here[1]["hit"], "0");
+    assert_eq!(there[1]["object"], "plane #1");
     // Normals go by the inverse transpose: (n_y/4, 2 n_x, −n_z/2).
-    let [x, y, z] = ["nx", "ny", "nz"].map(|name| number(&here[0], name));
-    let image = glam::DVec3::new(y / 4.0, 2.0 * x, -z / 2.0).normalize();
-    let found = ["nx", "ny", "nz"].map(|name| number(&there[0], name));
+    let [here, there] = [&here, &there].map(|rows| vector(&rows[0], ["nx", "ny", "nz"]));
+    let image = glam::DVec3::new(here.y / 4.0, 2.0 * here.x, -here.z / 2.0).normalize();
     // Two normalisations, a few units of rounding each.
-    assert!((glam::DVec3::from_array(found) - image).abs().max_element() < 1e-15);
+    assert!((there - image).abs().max_element() < 1e-15);
 }
 
 #[test]
@@ -254,70 +226,32 @@ fn the_summary_goes_to_stderr_unless_quiet() {
         "note: ignored columns: foo\n\
          2 rays, 1 hits; questions decided in f64: 2, in double-double: 0, exactly: 0\n"
     );
-    let said = scene.run_with(&[&TRACE[..], &["--quiet"]].concat(), rays);
+    let said = scene.run_with(&words("trace scene.toml --rays - --quiet"), rays);
     assert_eq!((said.code, said.err.as_str()), (Some(0), ""));
 }
 
 #[test]
 fn bad_rays_are_refused_with_their_place() {
     let heading = "ox,oy,oz,dx,dy,dz,tmin,tmax\n";
-    let no_number = "is not a number that can stand here";
-    let cases = [
-        ("", "the column ox is missing", ":1"),
-        ("ox,oy,oz,dx,dy\n", "the column dz is missing", ":1"),
-        (
-            "ox,ox,oz,dx,dy,dz\n",
-            "the column ox occurs twice",
-            ":1, column ox",
-        ),
-        (
-            "0,0,0,1,0,0,0",
-            "the line has 7 fields, the heading has 8",
-            ":3",
-        ),
-        (
-            "0,0,1.5.2,1,0,0,0,1",
-            &format!("\"1.5.2\" {no_number}"),
-            ":3, column oz",
-        ),
-        (
-            "0,,0,1,0,0,0,1",
-            &format!("\"\" {no_number}"),
-            ":3, column oy",
-        ),
-        (
-            "0,0,0,1,nan,0,0,1",
-            &format!("\"nan\" {no_number}"),
-            ":3, column dy",
-        ),
-        (
-            "0,0,0,1,1e309,0,0,1",
-            &format!("\"1e309\" {no_number}"),
-            ":3, column dy",
-        ),
-        (
-            "0,0,0,-0.0,0,0,0,1",
-            "the direction is zero",
-            ":3, column dx",
-        ),
-        (
-            "0,0,0,1,0,0,inf,1",
-            &format!("\"inf\" {no_number}"),
-            ":3, column tmin",
-        ),
-        (
-            "0,0,0,1,0,0,0,-inf",
-            &format!("\"-inf\" {no_number}"),
-            ":3, column tmax",
-        ),
-    ];
+    // A heading or a row, the message, and the place.
+    let cases = r#"
+        | the column ox is missing | :1
+        ox,oy,oz,dx,dy | the column dz is missing | :1
+        ox,ox,oz,dx,dy,dz | the column ox occurs twice | :1, column ox
+        0,0,0,1,0,0,0 | the line has 7 fields, the heading has 8 | :3
+        0,0,1.5.2,1,0,0,0,1 | "1.5.2" is not a number that can stand here | :3, column oz
+        0,,0,1,0,0,0,1 | "" is not a number that can stand here | :3, column oy
+        0,0,0,1,nan,0,0,1 | "nan" is not a number that can stand here | :3, column dy
+        0,0,0,1,1e309,0,0,1 | "1e309" is not a number that can stand here | :3, column dy
+        0,0,0,-0.0,0,0,0,1 | the direction is zero | :3, column dx
+        0,0,0,1,0,0,inf,1 | "inf" is not a number that can stand here | :3, column tmin
+        0,0,0,1,0,0,0,-inf | "-inf" is not a number that can stand here | :3, column tmax"#;
     let scene = sphere();
-    for (row, message, place) in cases {
+    for [row, message, place] in cells(cases) {
         let is_heading = row.is_empty() || row.starts_with("ox");
-        let rays = if is_heading {
-            row.to_owned()
-        } else {
-            format!("{heading}0,0,3,0,0,-1,0,inf\r\n{row}\n0,0,3,0,0,-1,0,inf\n")
+        let rays = match is_heading {
+            true => row.to_owned(),
+            false => format!("{heading}0,0,3,0,0,-1,0,inf\r\n{row}\n0,0,3,0,0,-1,0,inf\n"),
         };
         let said = scene.run_with(&TRACE, &rays);
         assert_eq!(said.code, Some(2), "{row}");
@@ -333,30 +267,20 @@ fn bad_rays_are_refused_with_their_place() {
 #[test]
 fn what_cannot_be_done_ends_with_2() {
     let scene = sphere();
-    let rays = "trace scene.toml --rays";
-    for (arguments, message) in [
-        ("trace none.toml --rays -", "cannot read none.toml"),
-        ("trace . --rays -", ". is a directory"),
-        (&format!("{rays} none.csv"), "cannot read none.csv"),
-        (&format!("{rays} ."), "cannot read ."),
-        ("trace scene.toml", "the following required arguments"),
-        (&format!("{rays} - --panel a"), "there is no panel \"a\""),
-        (&format!("{rays} - --set x"), "invalid value 'x'"),
-        (&format!("{rays} - --set image.spp=0"), "image.spp is 0"),
-        (
-            "render scene.toml --nonsense",
-            "unexpected argument '--nonsense'",
-        ),
-        (
-            "render scene.toml --crop 3,0,3,4",
-            "invalid value '3,0,3,4'",
-        ),
-        (
-            "render scene.toml --layers depth,deep",
-            "invalid value 'deep'",
-        ),
-        ("paint scene.toml", "unrecognized subcommand 'paint'"),
-    ] {
+    let cases = "
+        trace none.toml --rays - | cannot read none.toml
+        trace . --rays - | . is a directory
+        trace scene.toml --rays none.csv | cannot read none.csv
+        trace scene.toml --rays . | cannot read .
+        trace scene.toml | the following required arguments
+        trace scene.toml --rays - --panel a | there is no panel \"a\"
+        trace scene.toml --rays - --set x | invalid value 'x'
+        trace scene.toml --rays - --set image.spp=0 | image.spp is 0
+        render scene.toml --nonsense | unexpected argument '--nonsense'
+        render scene.toml --crop 3,0,3,4 | invalid value '3,0,3,4'
+        render scene.toml --layers depth,deep | invalid value 'deep'
+        paint scene.toml | unrecognized subcommand 'paint'";
+    for [arguments, message] in cells(cases) {
         let message = format!("error: {message}");
         let said = scene.refused(&words(arguments));
         assert!(said.starts_with(&message), "{arguments}: {said}");

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use etalon::inside::film::names;
-use etalon::{Attribute, Estimate, Picture, Values};
+use etalon::{Attribute, Channel, Estimate, Picture, Values};
 
 use crate::statistics_support::moments;
 use crate::support::{Folder, assert_says, attribute, value_bits, wide, words};
@@ -69,10 +69,8 @@ fn refused(folder: &Folder, arguments: &[&str]) -> String {
 
 /// Every channel's name and bits.
 fn bits(picture: &Picture) -> Vec<(String, Vec<u32>)> {
-    let channels = picture.channels.iter();
-    channels
-        .map(|c| (c.name.clone(), value_bits(&c.values)))
-        .collect()
+    let bits = |c: &Channel| (c.name.clone(), value_bits(&c.values));
+    picture.channels.iter().map(bits).collect()
 }
 
 /// The count that "… after 123 spp in …" names.
@@ -123,11 +121,10 @@ fn bits_are_the_same_on_any_threads_and_instructions() {
         assert_eq!(with(&["--threads", threads]), reference, "{threads}");
     }
     let mut others = 0;
+    let layers = LAYERS.join(" ");
     for instructions in ["avx512", "avx2", "sse2"] {
-        let mut all = vec!["render", "scene.toml", "-o", "other.exr"];
-        all.extend(LAYERS);
-        all.extend(["--instructions", instructions]);
-        let said = folder.run(&all);
+        let with = format!("{layers} --instructions {instructions}");
+        let said = folder.run(&words(&format!("render scene.toml -o other.exr {with}")));
         if said.code == Some(2) {
             assert!(said.err.contains("this machine has no"), "{}", said.err);
             continue;
@@ -153,19 +150,15 @@ fn a_time_limit_gives_the_bits_of_the_count_it_reached() {
         assert_eq!(bits(&limited.0), counted, "{sampler} {count}");
     }
     let (_, said) = render(&folder, &["--time", "100", "--spp", "5"]);
-    assert_eq!(
-        reached(&said),
-        "5",
-        "--spp is the most where both are given"
-    );
+    // Where both are given, --spp is the most.
+    assert_eq!(reached(&said), "5");
 }
 
 #[test]
 fn strata_need_a_planned_count() {
     let folder = Folder::new(SCENE);
     let strata = ["--sampler", "stratified", "--time", "0.05"];
-    let message = refused(&folder, &strata);
-    assert!(message.contains("--time needs --spp"), "{message}");
+    assert_says(&refused(&folder, &strata), &["--time needs --spp"]);
     let planned = [&strata[..], &["--spp", "1000000"]].concat();
     let (picture, said) = render(&folder, &planned);
     assert!(said.contains(" spp (of strata for 1000000) in "), "{said}");
@@ -222,14 +215,11 @@ const SKY: &str = "environment = 1\n\
 fn a_flat_environment_is_1_in_every_bin() {
     let folder = Folder::new(SKY);
     for wavelengths in ["4", "8"] {
-        let layers = ["--layers", "spectral:365-825:10"];
-        let (picture, _) = render(
-            &folder,
-            &[&["--wavelengths", wavelengths], &layers[..]].concat(),
-        );
+        let arguments = format!("--layers spectral:365-825:10 --wavelengths {wavelengths}");
+        let (picture, _) = render(&folder, &words(&arguments));
         let names = picture.channels.iter().map(|c| &c.name);
-        let names: Vec<&String> = names.filter(|name| name.starts_with("S0.")).collect();
-        assert_eq!(names.len(), 47);
+        let names = names.filter(|name| name.starts_with("S0."));
+        assert_eq!(names.clone().count(), 47);
         for name in names {
             let mean = Estimate::mean(&wide(&picture, name));
             // 94 means at five standard errors: wrong once in 2 × 10⁴ seeds, and this is one.
@@ -241,7 +231,7 @@ fn a_flat_environment_is_1_in_every_bin() {
         }
     }
     let message = refused(&folder, &["--layers", "spectral:300-700:10"]);
-    assert!(message.contains("the bin at 300 nm"), "{message}");
+    assert_says(&message, &["the bin at 300 nm"]);
 }
 
 #[test]
@@ -307,12 +297,10 @@ fn info_explains_the_plan() {
         let line = said.lines().find(|line| line.starts_with(start)).unwrap();
         line.split_once(": ").unwrap().1.to_owned()
     };
-    let kept = branches(&said, "in the loop");
-    let left_out = branches(&said, "left out of the loop");
-    assert!(
-        kept.contains("dispersion") && left_out.contains("lens"),
-        "{said}"
-    );
+    let [kept, left_out] =
+        ["in the loop", "left out of the loop"].map(|start| branches(&said, start));
+    assert_says(&kept, &["dispersion"]);
+    assert_says(&left_out, &["lens"]);
     // Nothing is left out of the full plan.
     let full = folder.done(&[&info[..], &["--plan", "full"]].concat());
     let nothing = branches(&full, "left out of the loop");
@@ -363,10 +351,9 @@ mod interrupts {
         interrupt(&child);
         let said = Finished::from(child.wait_with_output().unwrap());
         assert_eq!(said.code, Some(0));
-        let said = said.out;
-        assert!(said.contains("interrupted after "), "{said}");
+        assert_says(&said.out, &["interrupted after "]);
         let kept = folder.picture("scene.exr");
-        let counted = render_bits(&folder, &["--spp", reached(&said)]);
+        let counted = render_bits(&folder, &["--spp", reached(&said.out)]);
         assert_eq!(bits(&kept), counted);
     }
 
@@ -390,28 +377,18 @@ mod interrupts {
 fn error_bars_of_bins_are_the_spread_over_seeds() {
     let folder = Folder::new(&SKY.replace("256 }", "32, sampler = \"independent\" }"));
     let (name, error) = ("S0.550,000000nm", "standard_error.S0.550,000000nm");
-    let with = |replicates: &str, seed: &str| {
-        let arguments = [
-            "--layers",
-            "spectral:550-550:20",
-            "--replicates",
-            replicates,
-            "--seed",
-            seed,
-        ];
-        render(&folder, &arguments).0
+    let with = |replicates: u32, seed: u32| {
+        let layers = "--layers spectral:550-550:20";
+        let arguments = format!("{layers} --replicates {replicates} --seed {seed}");
+        render(&folder, &words(&arguments)).0
     };
-    let pictures: Vec<Picture> = (0..16).map(|seed| with("8", &seed.to_string())).collect();
-    let columns = [name, error].map(|name| {
-        let wide = pictures.iter().map(|picture| wide(picture, name));
-        wide.collect::<Vec<Vec<f64>>>()
-    });
+    let pictures: Vec<Picture> = (0..16).map(|seed| with(8, seed)).collect();
+    let columns = |name| pictures.iter().map(|picture| wide(picture, name)).collect();
+    let columns: [Vec<Vec<f64>>; 2] = [name, error].map(columns);
     let (mut reported, mut spread) = (0.0, 0.0);
     for pixel in 0..256 {
-        let [values, errors] = columns.each_ref().map(|pictures| {
-            let values = pictures.iter().map(|values| values[pixel]);
-            values.collect::<Vec<f64>>()
-        });
+        let at = |pictures: &Vec<Vec<f64>>| pictures.iter().map(|values| values[pixel]).collect();
+        let [values, errors]: [Vec<f64>; 2] = columns.each_ref().map(at);
         spread += moments(&values).1;
         reported += errors.iter().map(|error| error * error).sum::<f64>() / 16.0;
     }
@@ -419,7 +396,7 @@ fn error_bars_of_bins_are_the_spread_over_seeds() {
     // √(2/3840 + 2/28672) = 0.0243 for normal values; five of them are 1 in 1.7 × 10⁶ seeds.
     let ratio = reported / spread;
     assert!((ratio - 1.0).abs() < 5.0 * 0.0243, "{ratio}");
-    let picture = with("1", "0");
+    let picture = with(1, 0);
     assert!(picture.channel(error).is_none() && picture.channel(name).is_some());
 }
 
@@ -439,8 +416,6 @@ fn parallel_light_falls_on_a_plane_alone() {
     let variances: Vec<f64> = variances.iter().map(|error| error * error).collect();
     let mean = Estimate::mean_of(&bin, &variances, f64::INFINITY);
     // Lambert: 0.5 · π/π; wrong at five standard errors once in 2 × 10⁶ seeds.
-    assert!(
-        mean.standard_error < 0.01 && mean.score(0.5).abs() < 5.0,
-        "{mean}"
-    );
+    let near = mean.score(0.5).abs() < 5.0;
+    assert!(mean.standard_error < 0.01 && near, "{mean}");
 }

@@ -12,7 +12,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde_json::Value;
 
-use crate::support::{Finished, Folder, assert_says};
+use crate::support::{Finished, Folder, assert_says, words};
 use crate::truth_file::{list, number};
 
 /// Edge of the pictures, pixels.
@@ -88,21 +88,19 @@ fn set(picture: &mut Picture, name: &str, value: Attribute) {
     picture.attributes.push((name.to_owned(), value));
 }
 
-fn text(text: &str) -> Attribute {
-    Attribute::Text(text.to_owned())
-}
-
-/// Runs the command on two pictures in a folder with a scene file.
-fn compare(a: &Picture, b: Option<&Picture>, arguments: &[&str]) -> (Finished, Folder) {
+/// What the command says of two pictures in a folder with a scene file, with this exit code.
+#[track_caller]
+fn compare(a: &Picture, b: Option<&Picture>, more: &str, code: i32) -> (Finished, Folder) {
     let folder = Folder::new(SCENE);
-    let mut all = vec!["compare", "a.exr"];
     exr::write(&folder.path("a.exr"), a).unwrap();
+    let mut command = "compare a.exr".to_owned();
     if let Some(b) = b {
-        all.push("b.exr");
         exr::write(&folder.path("b.exr"), b).unwrap();
+        command += " b.exr";
     }
-    all.extend(arguments);
-    (folder.run(&all), folder)
+    let said = folder.run(&words(&(command + more)));
+    assert_eq!(said.code, Some(code), "{said:?}");
+    (said, folder)
 }
 
 const SCENE: &str = "[camera]\n# another text\n";
@@ -110,16 +108,14 @@ const SCENE: &str = "[camera]\n# another text\n";
 /// The exit code, and words of the answer or the message.
 #[track_caller]
 fn expect(a: &Picture, b: &Picture, code: i32, words: &[&str]) {
-    let (said, _) = compare(a, Some(b), &[]);
-    assert_eq!(said.code, Some(code), "{said:?}");
+    let (said, _) = compare(a, Some(b), "", code);
     assert_says(&(said.out + &said.err), words);
 }
 
 #[test]
 fn honest_pictures_are_consistent() {
     let b = HONEST.seed(2).picture(true);
-    let (said, folder) = compare(&HONEST.picture(false), Some(&b), &["--heatmap", "map.png"]);
-    assert_eq!(said.code, Some(0), "{said:?}");
+    let (said, folder) = compare(&HONEST.picture(false), Some(&b), " --heatmap map.png", 0);
     let caught = "caught from a bias of";
     assert_says(&said.out, &["\nconsistent", caught, "relMSE", "heat map"]);
     assert!(folder.path("map.png").exists());
@@ -129,16 +125,11 @@ fn honest_pictures_are_consistent() {
 #[test]
 fn a_bias_of_all_or_of_a_block_is_seen() {
     let b = HONEST.seed(2).picture(true);
-    let all = Drawn {
-        factor: 1.02,
-        ..HONEST
-    };
+    let [mut all, mut block] = [HONEST; 2];
+    all.factor = 1.02;
     let words = ["NOT consistent", "the image mean is off by +"];
     expect(&all.picture(false), &b, 1, &words);
-    let block = Drawn {
-        block: 0.95,
-        ..HONEST
-    };
+    block.block = 0.95;
     let words = ["the block of 8x8 pixels at 0,8 is off by"];
     expect(&block.picture(false), &b, 1, &words);
 }
@@ -146,10 +137,8 @@ fn a_bias_of_all_or_of_a_block_is_seen() {
 /// Error bars that are too small show in the distribution of the blocks, not in their means.
 #[test]
 fn dishonest_error_bars_are_seen() {
-    let told = Drawn {
-        told: 0.5,
-        ..HONEST
-    };
+    let mut told = HONEST;
+    told.told = 0.5;
     let judged = judge(&told.seed(3).side(), &told.seed(4).side(), LEVEL).unwrap();
     let mut rejected = judged.channels.iter().flat_map(|c| &c.rejected);
     assert!(rejected.any(|words| words.contains("distributed")));
@@ -167,10 +156,8 @@ fn level_and_power_are_as_stated() {
     assert!((3.0..37.0).contains(&alarms), "{alarms}");
     let smallest = judged(HONEST, HONEST.seed(2)).channels[0].smallest_caught;
     let runs = 100;
-    let biased = Drawn {
-        factor: 1.0 + smallest,
-        ..HONEST
-    };
+    let mut biased = HONEST;
+    biased.factor = 1.0 + smallest;
     let is_caught = |run: &u64| {
         let judged = judged(biased.seed(1000 + 2 * run), HONEST.seed(1001 + 2 * run));
         let mut rejected = judged.channels[0].rejected.iter();
@@ -187,12 +174,11 @@ fn a_number_can_be_the_truth() {
     a.channels
         .retain(|c| c.name == "R" || c.name == "standard_error.R");
     for (arguments, code, words) in [
-        (&["--truth", "16.5"][..], 0, "consistent"),
-        (&["--truth", "16.6"], 1, "NOT consistent"),
-        (&[], 2, "B.exr"),
+        (" --truth 16.5", 0, "consistent"),
+        (" --truth 16.6", 1, "NOT consistent"),
+        ("", 2, "B.exr"),
     ] {
-        let (said, _) = compare(&a, None, arguments);
-        assert_eq!(said.code, Some(code), "{said:?}");
+        let (said, _) = compare(&a, None, arguments, code);
         assert_says(&(said.out + &said.err), &[words]);
     }
 }
@@ -208,17 +194,13 @@ fn a_band_that_is_black_in_both_pictures_is_said_to_be() {
         }
         picture
     };
-    let (said, _) = compare(&dark(1), Some(&dark(2)), &[]);
-    assert_eq!(said.code, Some(0), "{said:?}");
-    assert_says(
-        &said.out,
-        &["black in both pictures", "undefined", "consistent"],
-    );
+    let (said, _) = compare(&dark(1), Some(&dark(2)), "", 0);
+    let words = ["black in both pictures", "undefined", "consistent"];
+    assert_says(&said.out, &words);
     assert!(!said.out.contains("NaN"), "{said:?}");
     assert_eq!(said.out.matches("black").count(), 1, "{said:?}");
     // Black in one picture only is a difference.
-    let (said, _) = compare(&HONEST.picture(false), Some(&dark(2)), &[]);
-    assert_eq!(said.code, Some(1), "{said:?}");
+    let (said, _) = compare(&HONEST.picture(false), Some(&dark(2)), "", 1);
     assert_says(&said.out, &["B: the image mean is off", "NOT consistent"]);
     assert!(!said.out.contains("black"), "{said:?}");
 }
@@ -226,20 +208,14 @@ fn a_band_that_is_black_in_both_pictures_is_said_to_be() {
 #[test]
 fn json_holds_everything() {
     let b = HONEST.seed(2).picture(true);
-    let (said, _) = compare(&HONEST.picture(false), Some(&b), &["--json"]);
+    let (said, _) = compare(&HONEST.picture(false), Some(&b), " --json", 0);
     let json: Value = serde_json::from_str(&said.out).unwrap();
     assert_eq!(json["judgement"]["consistent"], true);
     let channels = list(&json["channels"]).iter();
     let names: Vec<&str> = channels.map(|c| c["channel"].as_str().unwrap()).collect();
     assert_eq!(names, ["R", "G", "B", channel_name(450.0).as_str()]);
     let metrics = &json["channels"][0]["metrics"];
-    for name in [
-        "mean_error",
-        "relative_mean_error",
-        "rmse",
-        "relmse",
-        "smape",
-    ] {
+    for name in words("mean_error relative_mean_error rmse relmse smape") {
         assert!(metrics[name]["value"].is_number(), "{name}");
         assert!(metrics[name]["standard_error"].is_number(), "{name}");
     }
@@ -259,9 +235,7 @@ fn what_cannot_be_compared_is_said() {
     // One channel of ones, but for a pixel.
     let ones = |edge: usize, name: &str| {
         let mut picture = Picture::new(edge, edge);
-        picture
-            .channels
-            .push(Channel::float(name, vec![1.0; edge * edge]));
+        picture.channels = vec![Channel::float(name, vec![1.0; edge * edge])];
         picture
     };
     refused(&ones(4, "R"), &["a.exr has 32x32 pixels and b.exr has 4x4"]);
@@ -294,6 +268,7 @@ fn what_cannot_be_compared_is_said() {
 fn stale_references_and_other_scenes_are_told() {
     let mut a = HONEST.picture(false);
     let mut b = HONEST.seed(2).picture(true);
+    let text = |text: &str| Attribute::Text(text.to_owned());
     let of = |picture: &mut Picture, hash: &str| {
         set(picture, "sceneFile", text("scene.toml"));
         set(picture, "sceneHash", text(hash));
@@ -348,8 +323,7 @@ fn p_values_are_students() {
     let judged = judge(&HONEST.side(), &HONEST.seed(2).side(), LEVEL).unwrap();
     for channel in &judged.channels {
         let score = channel.relative_bias / channel.standard_error;
-        let p = student::two_sided(score, channel.freedom);
-        let found = channel.p_value;
+        let (found, p) = (channel.p_value, student::two_sided(score, channel.freedom));
         // Rounding of single precision is allowed for, a millionth beside an error of 0.15 %.
         assert!((found - p).abs() < 0.01, "{found} and {p}");
     }

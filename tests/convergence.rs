@@ -6,6 +6,7 @@
 use std::path::Path;
 
 use crate::agreement::case::Case;
+use crate::sampling::KINDS;
 use etalon::inside::scene::{SamplerKind, load};
 use etalon::inside::stats::family::sidak;
 use etalon::{BinGrid, Estimate, Overrides, Side};
@@ -17,12 +18,6 @@ const LEVEL: f64 = 1e-4;
 const TESTS: usize = 60;
 /// Pictures with seeds of their own.
 const PICTURES: u64 = 40;
-
-const SAMPLERS: [SamplerKind; 3] = [
-    SamplerKind::Independent,
-    SamplerKind::Stratified,
-    SamplerKind::Sobol,
-];
 
 fn level() -> f64 {
     sidak(LEVEL, TESTS)
@@ -76,7 +71,7 @@ fn honesty(pictures: &[Side], channel: usize, factor: f64) -> f64 {
 /// In each channel and band, with each sampler. A quarter more or less would be seen.
 #[test]
 fn the_reported_variance_is_the_variance() {
-    for sampler in SAMPLERS {
+    for sampler in KINDS {
         let case = case(sampler);
         let pictures = pictures(&case, 64);
         for channel in 0..pictures[0].channels.len() {
@@ -103,7 +98,7 @@ fn slope(few: &[Side], many: &[Side]) -> Estimate {
 /// whose error does not fall at all, or falls by a fifth less than it should, is seen.
 #[test]
 fn squared_errors_fall_as_they_should() {
-    let measured = SAMPLERS.into_par_iter().map(|sampler| {
+    let measured = KINDS.into_par_iter().map(|sampler| {
         let case = case(sampler);
         let (few, many) = (pictures(&case, 16), pictures(&case, 256));
         (sampler, slope(&few, &many), slope(&few, &few))

@@ -8,7 +8,7 @@ use etalon::{Estimate, Plan, Scene};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use crate::support::rendered;
+use crate::support::{object, rendered};
 
 const ROOMS: u64 = 300;
 /// Probability of a false alarm of all of them together.
@@ -88,12 +88,11 @@ water = {{ glass = "water" }}
         triple(rng, 0.3),
         triple_within([1.0, 0.5, -1.0], rng, 0.2),
     );
+    let ground = "{ rotate_x = -90 }, { translate = [0, -3, 0] }";
     text += &if sky {
-        "[[object]]\nshape = \"plane\"\nmaterial = \"dull\"\n\
-         transform = [{ rotate_x = -90 }, { translate = [0, -3, 0] }]\n"
-            .to_owned()
+        object("\"plane\"", "dull", ground)
     } else {
-        format!("[[object]]\nshape = {wall}\nmaterial = \"wall\"\ntransform = [{place}]\n")
+        object(&wall, "wall", &place)
     };
     for corner in 0..rng.random_range(0..8) {
         let shape = [
@@ -104,25 +103,18 @@ water = {{ glass = "water" }}
             "rectangle = { size = [0.5, 0.3] }",
             "implicit = \"heart\", inside = [[-1.2, -0.75, -1.05], [1.2, 0.75, 1.3]]",
         ][rng.random_range(0..6)];
-        let size = if shape.starts_with("implicit") {
-            0.3
-        } else {
-            1.0
-        };
+        let size = [1.0, 0.3][usize::from(shape.starts_with("implicit"))];
         let flat = shape.starts_with("disk") || shape.starts_with("rectangle");
         let materials = ["bright", "dull", "mirror", "water"];
         let material = materials[rng.random_range(0..if flat { 3 } else { 4 })];
         let stretch = [1.0, 1.5][rng.random_range(0..2)] * size;
-        text += &format!(
-            "[[object]]\nshape = {{ {shape} }}\nmaterial = \"{material}\"\n\
-             transform = [{{ scale = [{size}, {stretch}, {size}] }}, {}, {{ translate = {} }}]\n",
+        let place = [0, 1, 2].map(|bit| f64::from(corner >> bit & 1) * 2.0 - 1.0);
+        let place = format!(
+            "{{ scale = [{size}, {stretch}, {size}] }}, {}, {{ translate = {} }}",
             turn(rng),
-            triple_within(
-                [0, 1, 2].map(|bit| f64::from(corner >> bit & 1) * 2.0 - 1.0),
-                rng,
-                0.2
-            ),
+            triple_within(place, rng, 0.2)
         );
+        text += &object(&format!("{{ {shape} }}"), material, &place);
     }
     Scene::parse(&text).unwrap()
 }

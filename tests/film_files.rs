@@ -8,7 +8,7 @@ use etalon::inside::film::spectral::{self, Bin};
 use etalon::inside::film::{Error, exr, hash, names, png, whole};
 use etalon::{Attribute, Channel, Picture, Values};
 
-use crate::support::{Folder, value_bits};
+use crate::support::{Folder, assert_says, attribute, value_bits};
 
 /// 19 × 37 pixels: neither is a multiple of ZIP's 16 lines, so that the last block is short.
 const WIDTH: usize = 19;
@@ -50,19 +50,18 @@ fn picture() -> Picture {
 
 /// Attributes of every type, as many as the provenance of a picture has.
 fn attributes() -> Vec<(String, Attribute)> {
-    let mut attributes = vec![
-        (
-            "sceneText".to_owned(),
-            Attribute::Text("# Würfel — λ = 550 nm → 人\n[camera]\n".repeat(400)),
-        ),
-        ("plan".to_owned(), Attribute::Text(String::new())),
-        ("spp".to_owned(), Attribute::whole_number(5_000_000_000)),
-        ("nanCount".to_owned(), Attribute::whole_number(3)),
-        ("seconds".to_owned(), Attribute::Double(0.1)),
-        ("single".to_owned(), Attribute::Float(0.1)),
+    let text = "# Würfel — λ = 550 nm → 人\n[camera]\n".repeat(400);
+    let some = [
+        ("sceneText", Attribute::Text(text)),
+        ("plan", Attribute::Text(String::new())),
+        ("spp", Attribute::whole_number(5_000_000_000)),
+        ("nanCount", Attribute::whole_number(3)),
+        ("seconds", Attribute::Double(0.1)),
+        ("single", Attribute::Float(0.1)),
     ];
-    attributes.extend((0..15).map(|i| (format!("number{i}"), Attribute::Int(-i))));
-    attributes
+    let named = |(name, value): (&str, Attribute)| (name.to_owned(), value);
+    let numbers = (0..15).map(|i| (format!("number{i}"), Attribute::Int(-i)));
+    some.into_iter().map(named).chain(numbers).collect()
 }
 
 /// A folder and a place in it.
@@ -96,7 +95,11 @@ fn exr_keeps_every_bit_and_attribute() {
     let (folder, path) = place("picture.exr");
     let picture = picture();
     exr::write(&path, &picture).unwrap();
-    assert_same(&picture, &exr::read(&path).unwrap());
+    let read = exr::read(&path).unwrap();
+    assert_same(&picture, &read);
+    // Whole numbers beyond 32 bits are text.
+    assert_eq!(attribute(&read, "spp"), "5000000000");
+    assert_eq!(read.attribute("nanCount"), Some(&Attribute::Int(3)));
     assert_files(&folder, ["picture.exr"]);
 }
 
@@ -106,38 +109,36 @@ fn exr_is_a_single_part_of_sorted_scan_lines_compressed_by_zip() {
     let (_folder, path) = place("picture.exr");
     exr::write(&path, &picture()).unwrap();
     let meta = ::exr::meta::MetaData::read_from_file(&path, true).unwrap();
-    let [header] = meta.headers.as_slice() else {
-        panic!("{} parts", meta.headers.len());
-    };
+    assert_eq!(meta.headers.len(), 1, "parts");
+    let header = &meta.headers[0];
     assert_eq!(header.compression, Compression::ZIP16);
     assert_eq!(header.line_order, LineOrder::Increasing);
     assert!(!header.blocks.has_tiles());
     let primaries = header.shared_attributes.chromaticities.unwrap();
     assert_eq!((primaries.green.x(), primaries.green.y()), (0.3, 0.6));
     assert_eq!((primaries.white.x(), primaries.white.y()), (0.3127, 0.329));
-    let names = header.channels.list.iter().map(|c| c.name.to_string());
-    let names: Vec<String> = names.collect();
-    assert!(names.is_sorted(), "{names:?}");
+    let channels = &header.channels.list;
+    assert!(channels.is_sorted_by_key(|c| c.name.to_string()));
 }
 
 /// The order of a hash map with a random seed must not show: two such orders of 21 attributes
 /// agree by chance once in 21! ≈ 5e19.
 #[test]
 fn the_same_picture_is_the_same_bytes() {
-    let folder = Folder::empty();
-    let [first, second] = ["first", "second"].map(|name| folder.path(name));
-    exr::write(&first, &picture()).unwrap();
-    exr::write(&second, &picture()).unwrap();
-    assert!(fs::read(first).unwrap() == fs::read(second).unwrap());
+    let (_folder, path) = place("picture.exr");
+    let [first, second] = [(); 2].map(|()| {
+        exr::write(&path, &picture()).unwrap();
+        fs::read(&path).unwrap()
+    });
+    assert!(first == second);
 }
 
 #[test]
 fn spectral_layout_follows_the_paper() {
-    assert_eq!(spectral::channel_name(550.0), "S0.550,000000nm");
-    assert_eq!(spectral::channel_name(387.5), "S0.387,500000nm");
-    assert_eq!(spectral::wavelength("S0.387,500000nm"), Some(387.5));
-    assert_eq!(spectral::wavelength("T.387,500000nm"), None);
-    assert_eq!(spectral::wavelength("R"), None);
+    let [long, short] = ["S0.550,000000nm", "S0.387,500000nm"];
+    assert_eq!([550.0, 387.5].map(spectral::channel_name), [long, short]);
+    let found = [short, "T.387,500000nm", "R"].map(spectral::wavelength);
+    assert_eq!(found, [Some(387.5), None, None]);
 
     let (_folder, path) = place("spectral.exr");
     let mut picture = Picture::new(2, 1);
@@ -151,14 +152,12 @@ fn spectral_layout_follows_the_paper() {
     exr::write(&path, &picture).unwrap();
 
     let read = exr::read(&path).unwrap();
-    let text = |value: &str| Some(Attribute::Text(value.to_owned()));
-    let attribute = |name: &str| read.attribute(name).cloned();
-    assert_eq!(attribute("spectralLayoutVersion"), text("1.0"));
-    assert_eq!(attribute("emissiveUnits"), text("W.m^-2.sr^-1"));
-    assert_eq!(attribute("S0.387,500000nm"), None,);
-    assert_eq!(attribute("S0.550,000000nm"), None);
+    assert_eq!(attribute(&read, "spectralLayoutVersion"), "1.0");
+    assert_eq!(attribute(&read, "emissiveUnits"), "W.m^-2.sr^-1");
+    let is_none = |name: &&str| read.attribute(name).is_none();
+    assert!([short, long].iter().all(is_none));
     for (name, values) in [
-        ("S0.550,000000nm", [550.0, 0.5]),
+        (long, [550.0, 0.5]),
         ("standard_error.S0.550,000000nm", [0.25, 0.125]),
     ] {
         assert_eq!(read.floats(name), Some(values.as_slice()));
@@ -180,18 +179,12 @@ fn contradictory_pictures_are_refused() {
         ("reserved", vec![good()], &["compression"]),
     ];
     for (word, channels, attributes) in faults {
-        let attributes = attributes.iter();
-        let attributes = attributes.map(|name| ((*name).to_owned(), Attribute::Int(1)));
-        let picture = Picture {
-            channels,
-            attributes: attributes.collect(),
-            ..Picture::new(2, 1)
-        };
+        let mut picture = Picture::new(2, 1);
+        picture.channels = channels;
+        let attribute = |name: &&str| ((*name).to_owned(), Attribute::Int(1));
+        picture.attributes = attributes.iter().map(attribute).collect();
         let error = exr::write(&path, &picture).unwrap_err();
-        let Error::Write { source, .. } = &error else {
-            panic!("{error}");
-        };
-        assert_eq!(source.kind(), io::ErrorKind::InvalidInput);
+        assert!(is_write(&error, io::ErrorKind::InvalidInput), "{error}");
         assert!(error.to_string().contains(word), "{error}");
     }
     assert!(exr::write(&path, &Picture::new(0, 1)).is_err());
@@ -200,10 +193,11 @@ fn contradictory_pictures_are_refused() {
 
 /// Whether a file could be read, but not as a picture.
 fn is_content(error: &Error) -> bool {
-    let Error::Read { source, .. } = error else {
-        return false;
-    };
-    source.kind() == io::ErrorKind::InvalidData
+    matches!(error, Error::Read { source, .. } if source.kind() == io::ErrorKind::InvalidData)
+}
+
+fn is_write(error: &Error, kind: io::ErrorKind) -> bool {
+    matches!(error, Error::Write { source, .. } if source.kind() == kind)
 }
 
 #[test]
@@ -237,22 +231,23 @@ fn a_write_that_fails_leaves_the_old_file_and_nothing_else() {
         file.write_all(b"half a picture").unwrap();
         Err(io::ErrorKind::StorageFull.into())
     };
-    let Err(Error::Write { path: named, .. }) = whole::write(&path, full) else {
-        panic!("half a picture is written");
-    };
-    assert_eq!(named, path);
+    let error = whole::write(&path, full).unwrap_err();
+    assert!(matches!(error, Error::Write { path: named, .. } if named == path));
     assert_eq!(fs::read(&path).unwrap(), b"old");
     assert_files(&folder, ["old.exr"]);
 
-    let new = folder.path("new.exr");
-    whole::write(&new, full).unwrap_err();
+    whole::write(&folder.path("new.exr"), full).unwrap_err();
     assert_files(&folder, ["old.exr"]);
 }
 
-/// Whether the directory is what takes no new file.
-fn refuses_files(error: &Error) -> bool {
-    let words = "no file can be created in the directory";
-    matches!(error, Error::Write { .. }) && error.to_string().contains(words)
+/// Probes a place in a directory that takes no new file.
+#[track_caller]
+fn probe_refused(path: &Path) -> String {
+    let error = whole::probe(path).unwrap_err();
+    assert!(matches!(error, Error::Write { .. }), "{error}");
+    let message = error.to_string();
+    assert_says(&message, &["no file can be created in the directory"]);
+    message
 }
 
 #[test]
@@ -267,10 +262,9 @@ fn probing_finds_bad_paths_and_touches_nothing() {
     assert_files(&folder, ["old.exr"]);
 
     let missing = folder.path("missing/new.exr");
-    let error = whole::probe(&missing).unwrap_err();
-    assert!(refuses_files(&error), "{error}");
-    assert!(error.to_string().contains("missing/new.exr"), "{error}");
-    assert!(!error.to_string().contains(".part"), "{error}");
+    let message = probe_refused(&missing);
+    assert_says(&message, &["missing/new.exr"]);
+    assert!(!message.contains(".part"), "{message}");
     assert!(exr::write(&missing, &picture()).is_err());
     assert!(png::write_preview(&missing, 1, 1, &[[0.5; 3]]).is_err());
 
@@ -336,8 +330,7 @@ mod unix {
         fs::set_permissions(folder.path(""), locked).unwrap();
         let superuser = File::create(folder.path("trial")).is_ok();
         if !superuser {
-            let error = whole::probe(&path).unwrap_err();
-            assert!(refuses_files(&error), "{error}");
+            probe_refused(&path);
             assert!(exr::write(&path, &picture()).is_err());
             assert_eq!(fs::read(&path).unwrap(), b"old");
         }
@@ -349,8 +342,7 @@ mod unix {
     #[test]
     fn a_file_system_that_takes_no_files_is_an_error() {
         if Path::new("/proc/self").is_dir() {
-            let error = whole::probe(Path::new("/proc/picture.exr")).unwrap_err();
-            assert!(refuses_files(&error), "{error}");
+            probe_refused(Path::new("/proc/picture.exr"));
         }
     }
 
@@ -364,10 +356,7 @@ mod unix {
         exr::write(null, &picture()).unwrap();
         assert!(!fs::metadata(null).unwrap().is_file());
         let error = exr::write(full, &picture()).unwrap_err();
-        let Error::Write { source, .. } = &error else {
-            panic!("{error}");
-        };
-        assert_eq!(source.kind(), io::ErrorKind::StorageFull);
+        assert!(is_write(&error, io::ErrorKind::StorageFull), "{error}");
         assert!(error.to_string().contains("/dev/full"), "{error}");
         assert!(png::write_preview(full, 1, 1, &[[0.5; 3]]).is_err());
     }
@@ -396,13 +385,9 @@ fn preview_never_fails_on_odd_colours() {
     // half a level of at most 0.009 in linear light at its steepest).
     let encoded = png::encode([-0.3, 0.6, 0.1], 1.0);
     assert_eq!(encoded[0], 0);
-    let linear = encoded.map(|byte| {
-        let value = f64::from(byte) / 255.0;
-        if value <= 0.04045 {
-            value / 12.92
-        } else {
-            ((value + 0.055) / 1.055).powf(2.4)
-        }
+    let linear = encoded.map(|byte| match f64::from(byte) / 255.0 {
+        value if value <= 0.04045 => value / 12.92,
+        value => ((value + 0.055) / 1.055).powf(2.4),
     });
     let luminance = 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
     assert!((luminance - 0.37256).abs() < 0.0045, "{luminance}");
@@ -455,11 +440,4 @@ fn the_hash_of_scenes_is_sha_256() {
     // FIPS 180-4's example: SHA-256 of "abc".
     let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
     assert_eq!(hash("abc"), abc);
-}
-
-#[test]
-fn whole_numbers_beyond_32_bits_are_text() {
-    let text = Attribute::Text("5000000000".to_owned());
-    assert_eq!(Attribute::whole_number(5_000_000_000), text);
-    assert_eq!(Attribute::whole_number(3), Attribute::Int(3));
 }

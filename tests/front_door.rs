@@ -37,19 +37,12 @@ fn a_picture_holds_what_it_takes_to_make_it_again() {
         set: Overrides::pairs(attribute(&picture, "settings")),
         ..Overrides::default()
     };
-    let scene = parse(
-        "again",
-        attribute(&picture, "sceneText"),
-        Path::new(""),
-        &over,
-    )
-    .unwrap();
+    let text = attribute(&picture, "sceneText");
+    let scene = parse("again", text, Path::new(""), &over).unwrap();
     assert_eq!((scene.image.spp, scene.image.seed), (4, 7));
     let render = Render::new(scene).unwrap();
-    assert_eq!(
-        render.picture(&render.run()).unwrap().channels,
-        picture.channels
-    );
+    let again = render.picture(&render.run()).unwrap();
+    assert_eq!(again.channels, picture.channels);
 }
 
 #[test]
@@ -69,9 +62,8 @@ fn a_picture_says_where_it_comes_from_once() {
     assert_eq!(unlimited.attribute("nanCount"), Some(&Attribute::Int(0)));
     assert_eq!(attribute(&unlimited, "maxDepth"), "unlimited");
     assert!(unlimited.attribute("energyCutByMaxDepth").is_none());
-    let lights =
-        "point light 0 by way of mirrors and glass, point light 1 by way of mirrors and glass";
-    assert_eq!(attribute(&unlimited, "lightsLeftOut"), lights);
+    let lights = [0, 1].map(|i| format!("point light {i} by way of mirrors and glass"));
+    assert_eq!(attribute(&unlimited, "lightsLeftOut"), lights.join(", "));
 
     assert_eq!(limited.attribute("maxDepth"), Some(&Attribute::Int(2)));
     let cut = limited.attribute("energyCutByMaxDepth");
@@ -98,19 +90,9 @@ fn means_over_regions_are_those_of_their_pixels() {
     assert!((ratio - 1.0).abs() < 360.0 * f64::EPSILON);
 
     // A part of a part is a part of the whole.
-    let crop = Window {
-        x0: 3,
-        y0: 2,
-        x1: 19,
-        y1: 17,
-    };
-    let part = Window {
-        x0: 5,
-        y0: 4,
-        x1: 12,
-        y1: 9,
-    };
-    let cropped = render.cropped(crop).unwrap().run();
+    let window = |[x0, x1]: [u32; 2], [y0, y1]: [u32; 2]| Window { x0, y0, x1, y1 };
+    let part = window([5, 12], [4, 9]);
+    let cropped = render.cropped(window([3, 19], [2, 17])).unwrap().run();
     assert_eq!(cropped.mean(part), whole.mean(part));
     for outside in [
         Window { x0: 2, ..part },
@@ -132,10 +114,8 @@ impl Progress for Impatient {
 
 #[test]
 fn pilots_that_are_stopped_leave_everything_as_it_was() {
-    let goal = Goal {
-        target: Target::Image,
-        error: 1e-4,
-    };
+    let (target, error) = (Target::Image, 1e-4);
+    let goal = Goal { target, error };
     for sampler in ["sobol", "stratified"] {
         let text = SCENE.replace("spp = 8", &format!("spp = 8, sampler = \"{sampler}\""));
         let mut render = Render::new(Scene::parse(&text).unwrap()).unwrap();
@@ -150,8 +130,7 @@ fn pilots_that_are_stopped_leave_everything_as_it_was() {
 #[test]
 fn words_of_the_library_know_no_command_line() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut files = Vec::new();
-    rust_files(&root.join("src"), &mut files);
+    let mut files = rust_files(&root.join("src"));
     files.retain(|file| !file.starts_with(root.join("src/cli")));
     let flag = |rest: &str| rest.starts_with(|c: char| c.is_ascii_lowercase());
     for file in files {

@@ -18,17 +18,17 @@ const CENTRE: f64 = 3.0;
 
 /// A unit sphere as an implicit surface behind the camera, seen in a mirror at some distance.
 fn seen_from_afar(distance: f64, material: &str) -> Plan {
+    let mirror = -distance;
     let text = format!(
         "environment = 1\n\
          camera = {{ from = [0, 0, 0], to = [0, 0, -1], up = [0, 1, 0], orthographic = 1.9 }}\n\
          image = {{ size = [16, 16], spp = 4, max_depth = 8 }}\n\
          materials = {{ mirror = {{ mirror = {{ ideal = 1 }} }}, skin = {{ {material} }} }}\n\
          [[object]]\nshape = \"plane\"\nmaterial = \"mirror\"\n\
-         transform = [{{ translate = [0, 0, {:?}] }}]\n\
+         transform = [{{ translate = [0, 0, {mirror:?}] }}]\n\
          [[object]]\nmaterial = \"skin\"\n\
          shape = {{ implicit = \"x^2 + y^2 + z^2 - 1\", inside = [[-2, -2, -2], [2, 2, 2]] }}\n\
-         transform = [{{ translate = [0, 0, {CENTRE:?}] }}]\n",
-        -distance
+         transform = [{{ translate = [0, 0, {CENTRE:?}] }}]\n"
     );
     plan(&text).0
 }
@@ -51,11 +51,8 @@ fn departures(plan: &Plan) -> [usize; 2] {
             let start = from.point - DVec3::new(0.0, 0.0, CENTRE);
             let chord = -2.0 * start.dot(to.direction);
             let inward = from.normal.dot(to.direction) < 0.0;
-            let right = if inward {
-                to.object == Some(1) && (to.distance - chord).abs() < 1e-5
-            } else {
-                to.object != Some(1)
-            };
+            let near = (to.distance - chord).abs() < 1e-5;
+            let right = (to.object == Some(1)) == inward && (near || !inward);
             wrong += usize::from(!right);
         }
     }
@@ -82,38 +79,32 @@ fn rays_from_afar_leave_surfaces_as_others_do() {
 fn scaled(scale: f64) -> Vec<[[u64; 3]; 2]> {
     let s = |x: f64| format!("{:?}", x * scale);
     let at = |x: f64, y: f64, z: f64| format!("[{}, {}, {}]", s(x), s(y), s(z));
-    let placed = |x: f64, y: f64, z: f64| {
+    let placed = |x: f64, z: f64| {
+        let shift = at(x, 0.0, z);
         format!(
-            "transform = [{{ rotate_y = 25 }}, {{ scale = {scale:?} }}, {{ translate = {} }}]",
-            at(x, y, z)
+            "transform = [{{ rotate_y = 25 }}, {{ scale = {scale:?} }}, {{ translate = {shift} }}]"
         )
     };
+    let (from, to, light) = (at(0.5, 2.0, 9.0), at(0.0, 0.0, 0.0), at(1.0, 4.0, 3.0));
+    let (radius, focus, floor) = (s(0.05), s(9.0), at(0.0, -1.5, 0.0));
+    let [middle, left, right] = [placed(0.0, 0.0), placed(-2.6, 0.5), placed(2.6, 0.0)];
     let text = format!(
         "environment = 0.2\n\
-         [camera]\nfrom = {}\nto = {}\nfov = 40\nlens = {{ radius = {}, focus = {} }}\n\
+         [camera]\nfrom = {from}\nto = {to}\nfov = 40\n\
+         lens = {{ radius = {radius}, focus = {focus} }}\n\
          [image]\nsize = [40, 24]\nspp = 8\nmax_depth = 8\n\
          [materials]\nred = {{ diffuse = 0.6 }}\nglass = {{ glass = \"N-BK7\" }}\n\
          floor = {{ diffuse = 0.5 }}\nlamp = {{ emit = 20 }}\n\
          [[object]]\nshape = \"plane\"\nmaterial = \"floor\"\n\
-         transform = [{{ rotate_x = -90 }}, {{ translate = {} }}]\n\
-         [[object]]\nshape = {{ implicit = \"heart\" }}\nmaterial = \"red\"\n{}\n\
-         [[object]]\nmaterial = \"glass\"\n\
-         shape = {{ implicit = \"torus\" }}\n{}\n\
+         transform = [{{ rotate_x = -90 }}, {{ translate = {floor} }}]\n\
+         [[object]]\nshape = {{ implicit = \"heart\" }}\nmaterial = \"red\"\n{middle}\n\
+         [[object]]\nshape = {{ implicit = \"torus\" }}\nmaterial = \"glass\"\n{left}\n\
          [[object]]\nmaterial = \"red\"\n\
          shape = {{ implicit = \"sin(3*x) + sin(3*y) + sin(3*z)\", \
-                    inside = [[-1, -1, -1], [1, 1, 1]], closed = true }}\n{}\n\
+                    inside = [[-1, -1, -1], [1, 1, 1]], closed = true }}\n{right}\n\
          [[object]]\nshape = {{ sphere = {{ radius = {} }} }}\nmaterial = \"lamp\"\n\
-         transform = [{{ translate = {} }}]\n",
-        at(0.5, 2.0, 9.0),
-        at(0.0, 0.0, 0.0),
-        s(0.05),
-        s(9.0),
-        at(0.0, -1.5, 0.0),
-        placed(0.0, 0.0, 0.0),
-        placed(-2.6, 0.0, 0.5),
-        placed(2.6, 0.0, 0.0),
-        s(0.5),
-        at(1.0, 4.0, 3.0),
+         transform = [{{ translate = {light} }}]\n",
+        s(0.5)
     );
     let (plan, scene) = plan(&text);
     pixel_bits(&rendered(&scene, &plan))

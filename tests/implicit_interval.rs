@@ -14,8 +14,8 @@ use etalon::inside::shape::ladder::{Ladder, ScaledRay};
 use glam::DVec3;
 
 use crate::lanes_support::on_each;
-use crate::oracle_support::{Row, number, ray, rows, shapes};
-use crate::support::from_zero;
+use crate::oracle_support::{Row, number, query, rows, shapes};
+use crate::support::{cube, from_zero};
 
 /// Outcome with t in units of the ray's direction.
 fn first_hit(field: &EnclosedField, half: f64, query: &Query, searching: &Searching) -> Outcome {
@@ -23,15 +23,13 @@ fn first_hit(field: &EnclosedField, half: f64, query: &Query, searching: &Search
     let scaled = ScaledRay::new(&query.ray);
     let unit = 2f64.powi(scaled.exponent);
     let local = ladder.double_double.local(&scaled);
-    let inside = [DVec3::splat(-half), DVec3::splat(half)];
+    let inside = cube(half);
     let limits = [query.t_min * unit, f64::MAX];
-    match field.first_hit(&local, &inside, limits, searching).outcome {
-        Outcome::Found(mut root) => {
-            root.enclosure = root.enclosure.map(|t| t / unit);
-            Outcome::Found(root)
-        }
-        other => other,
+    let mut found = field.first_hit(&local, &inside, limits, searching);
+    if let Outcome::Found(root) = &mut found.outcome {
+        root.enclosure = root.enclosure.map(|t| t / unit);
     }
+    found.outcome
 }
 
 /// The first hit of a field as it is written, within a cube of edge 4.
@@ -45,14 +43,6 @@ fn written(text: &str, from: DVec3, direction: DVec3) -> Outcome {
 fn is_at(outcome: Outcome, t: f64, slack: f64) -> bool {
     matches!(outcome, Outcome::Found(root)
         if root.enclosure[0] - slack <= t && t <= root.enclosure[1] + slack)
-}
-
-fn query(row: &Row) -> Query {
-    Query {
-        ray: ray(row),
-        t_min: number(row, "tmin"),
-        t_max: f64::INFINITY,
-    }
 }
 
 /// Runs oracle rays; returns how many stay undecided. Found must hold the true t, which is given with
@@ -135,9 +125,7 @@ fn instruction_sets_agree() {
 }
 
 /// A function whose enclosures are off by a shift, as unsound rounding would make them.
-struct Shifted {
-    shift: f64,
-}
+struct Shifted(f64);
 
 impl Enclosed for Shifted {
     fn over(&mut self, from: &[f64; PIECES], to: &[f64; PIECES]) -> Pieces {
@@ -145,25 +133,18 @@ impl Enclosed for Shifted {
         let value = |i: usize| {
             let (a, b) = (from[i] - 0.5, to[i] - 0.5);
             let low = if a * b < 0.0 { 0.0 } else { (a * a).min(b * b) };
-            [
-                low - 1e-15 + self.shift,
-                (a * a).max(b * b) + 1e-15 + self.shift,
-            ]
+            [low - 1e-15, (a * a).max(b * b) + 1e-15].map(|end| end + self.0)
         };
         Pieces {
             value: [0, 1].map(|k| std::array::from_fn(|i| value(i)[k])),
-            slope: [
-                from.map(|t| 2.0 * (t - 0.5) - 1e-15),
-                to.map(|t| 2.0 * (t - 0.5) + 1e-15),
-            ],
+            slope: [(from, -1e-15), (to, 1e-15)].map(|(t, off)| t.map(|t| 2.0 * (t - 0.5) + off)),
             broken: 0,
             void: 0,
         }
     }
 
     fn at(&mut self, t: &[f64; PIECES]) -> [[f64; PIECES]; 2] {
-        let pieces = self.over(t, t);
-        pieces.value
+        self.over(t, t).value
     }
 }
 
@@ -171,7 +152,7 @@ impl Enclosed for Shifted {
 /// enclosures' width is excluded, and that is what an unsound enclosure would do to the root.
 #[test]
 fn double_roots_stay_undecided_unless_enclosures_are_unsound() {
-    let outcome = |shift| first_zero(&mut Shifted { shift }, [0.0, 1.0], 2_000).outcome;
+    let outcome = |shift| first_zero(&mut Shifted(shift), [0.0, 1.0], 2_000).outcome;
     assert_eq!(outcome(0.0), Outcome::Undecided);
     assert_eq!(outcome(1e-14), Outcome::Absent);
     assert!(matches!(outcome(-1e-6), Outcome::Found(_)));
@@ -212,7 +193,7 @@ fn undefined_factors_hide_zeros() {
 #[test]
 fn factors_have_bounds_of_their_own() {
     let tape = parse("((x^2 + y^2 + z^2 - 1/4)/100)^2", &[]).unwrap().tape;
-    let inside = [DVec3::splat(-1.0), DVec3::splat(1.0)];
+    let inside = cube(1.0);
     let field = EnclosedField::new(&tape).surveyed(&inside);
     let searching = Searching {
         method: Method::Spheres,
@@ -228,7 +209,7 @@ fn factors_have_bounds_of_their_own() {
 fn boxes_are_surveyed() {
     let survey = |text: &str| {
         let program = IntervalProgram::new(&parse(text, &[]).unwrap().tape);
-        let inside = [DVec3::splat(-1.0), DVec3::splat(1.0)];
+        let inside = cube(1.0);
         let all = on_each(|set| over_box::survey(set, &program, &inside));
         assert!(all.iter().all(|(_, other)| *other == all[0].1), "{all:?}");
         all[0].1
@@ -238,10 +219,8 @@ fn boxes_are_surveyed() {
     let sphere = survey("x^2 + y^2 + z^2 - 1/2");
     assert!(!sphere.empty && !sphere.undefined && !sphere.maybe_undefined);
     // |∇f| = 2r is 2√3 in the corners, and a part of the box is no sharper than that.
-    assert!(
-        sphere.steepness >= 12f64.sqrt() && sphere.steepness < 3.5,
-        "{sphere:?}"
-    );
+    let range = 12f64.sqrt()..3.5;
+    assert!(range.contains(&sphere.steepness), "{sphere:?}");
     assert!(survey("log(x) - 3").maybe_undefined);
 }
 
@@ -250,13 +229,8 @@ fn boxes_are_surveyed() {
 #[test]
 fn jumps_are_no_hits() {
     let along = |text: &str| written(text, DVec3::new(-5.0, 0.2, 0.3), DVec3::X);
-    for text in [
-        "1/x",
-        "1/x^3 + x",
-        "x^-5",
-        "atan2(x, y - 9) + y",
-        "1/(x^2 - 2) - y",
-    ] {
+    let texts = "1/x; 1/x^3 + x; x^-5; atan2(x, y - 9) + y; 1/(x^2 - 2) - y";
+    for text in texts.split(';') {
         assert_eq!(along(text), Outcome::Absent, "{text}");
     }
     // The pole at x = π/2 − 3/2 comes before the zero at x = arctan 20 − 3/2 − π.

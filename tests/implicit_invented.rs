@@ -14,6 +14,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::implicit_oracle::known;
+use crate::support::cube;
 
 /// Half the clip box; roots lie well within it.
 const HALF: f64 = 2.0;
@@ -71,13 +72,12 @@ impl Invented {
         let mut last = 0.0;
         for _ in 0..random.random_range(0..4) {
             let apart = 2.0_f64.powi(-random.random_range(10..52));
-            let r = match random.random_range(0..4) {
+            last = match random.random_range(0..4) {
                 0 => last,
                 1 => last + apart,
                 _ => random.random_range(-MOST..MOST),
             };
-            invented.real_root(r);
-            last = r;
+            invented.real_root(last);
         }
         for _ in 0..random.random_range(0..3) {
             let b = 2.0_f64.powi(-random.random_range(0..45));
@@ -119,10 +119,11 @@ fn ray(random: &mut Pcg64Mcg) -> (DVec3, DVec3) {
 /// The root that comes first for t ≥ 0.
 fn expected(invented: &Invented, origin: DVec3, direction: DVec3) -> Option<(f64, u32)> {
     let ahead = |(r, _): &&(f64, u32)| (*r >= origin.x) == (direction.x > 0.0) || *r == origin.x;
+    let mut roots = invented.roots.iter().filter(ahead).copied();
     if direction.x > 0.0 {
-        invented.roots.iter().find(ahead).copied()
+        roots.next()
     } else {
-        invented.roots.iter().rev().find(ahead).copied()
+        roots.next_back()
     }
 }
 
@@ -140,43 +141,34 @@ fn invented_polynomials_are_isolated_as_they_were_made() {
     let mut random = Pcg64Mcg::seed_from_u64(3);
     let sets = Instructions::all().into_iter();
     let mut workspaces: Vec<Workspace> = sets.map(Workspace::new).collect();
-    let effort = Effort {
-        sharp: true,
-        exact: true,
-    };
+    let (sharp, exact) = (true, true);
+    let effort = Effort { sharp, exact };
     let mut tiers = [0; 3];
     for case in 0..1000 {
         let invented = Invented::new(&mut random);
         let tape = invented.tape();
-        let inside = [DVec3::splat(-HALF), DVec3::splat(HALF)];
         let ladder = Ladder::new(&Affine::IDENTITY).unwrap();
-        let certified = Certified::new(&tape, inside, &ladder).unwrap();
+        let certified = Certified::new(&tape, cube(HALF), &ladder).unwrap();
         for _ in 0..4 {
             let (origin, direction) = ray(&mut random);
             let mut packet = Packet::default();
             packet.set(0, origin, direction, [0.0, f64::INFINITY]);
-            let all = workspaces.iter_mut();
-            let all: Vec<Answers> = all
-                .map(|w| certified.first_hits(&packet, effort, w))
-                .collect();
+            let ask = |w| certified.first_hits(&packet, effort, w);
+            let all: Vec<Answers> = workspaces.iter_mut().map(ask).collect();
             let answers = all[0];
             let same = |other: &Answers| known(other, 0) == known(&answers, 0);
             assert!(all.iter().all(same), "case {case}: {all:?}");
             let expected = expected(&invented, origin, direction);
             let found = answers.found & 1 == 1;
             assert!(found != (answers.absent & 1 == 1), "case {case}: undecided");
-            assert_eq!(
-                found,
-                expected.is_some(),
-                "case {case}: {:?}",
-                invented.roots
-            );
+            let roots = &invented.roots;
+            assert_eq!(found, expected.is_some(), "case {case}: {roots:?}");
             tiers[answers.tiers[0] as usize] += 1;
             let Some((root, multiplicity)) = expected else {
                 continue;
             };
             let held = holds(&answers, origin, direction, root);
-            assert!(held, "case {case}: {root} of {:?}", invented.roots);
+            assert!(held, "case {case}: {root} of {roots:?}");
             let told = answers.multiplicity[0];
             assert!(told == 0 || told == multiplicity, "case {case}: {told}");
         }

@@ -8,17 +8,16 @@ use std::collections::{BTreeMap, HashMap};
 use etalon::inside::field::normal::SHARP;
 use etalon::inside::math::affine::Affine;
 use etalon::inside::scene::FinderChoice;
-use etalon::inside::shape::Query;
-use etalon::inside::shape::Tally;
 use etalon::inside::shape::implicit::certified::{
     Answers, Certified, Effort, Packet, WIDTH, Workspace,
 };
 use etalon::inside::shape::implicit::placed::{ImplicitAnswer, ImplicitHit, PlacedImplicit};
 use etalon::inside::shape::ladder::Ladder;
+use etalon::inside::shape::{Query, Tally};
 use etalon::{Instructions, Tier};
 use etalon_doors::shapes::without_bounds;
 
-use crate::oracle_support::{Row, number, ray, rows, shapes, vector};
+use crate::oracle_support::{OracleShape, Row, number, query, ray, rows, shapes, vector};
 use crate::support::{from_zero, implicit};
 
 /// A surface in both forms, and half its cube's edge.
@@ -31,7 +30,7 @@ struct Surface {
 type Surfaces = BTreeMap<String, Surface>;
 
 fn surfaces(finder: FinderChoice) -> Surfaces {
-    let surface = |shape: crate::oracle_support::OracleShape| {
+    let surface = |shape: OracleShape| {
         let half = shape.half_width;
         let implicit = implicit(shape.field, half, finder);
         let (tape, to_world) = (&implicit.field.tape, &Affine::IDENTITY);
@@ -45,14 +44,6 @@ fn surfaces(finder: FinderChoice) -> Surfaces {
         (shape.name, surface)
     };
     shapes().into_iter().map(surface).collect()
-}
-
-fn query(row: &Row) -> Query {
-    Query {
-        ray: ray(row),
-        t_min: number(row, "tmin"),
-        t_max: f64::INFINITY,
-    }
 }
 
 /// Rays in the lanes of a packet.
@@ -169,9 +160,8 @@ fn second_hits() {
     let mut faults = Vec::new();
     for row in &rows("bounce.csv") {
         let ray = first[row["id"].as_str()];
-        let Surface {
-            placed, certified, ..
-        } = &surfaces[&ray["shape"]];
+        let surface = &surfaces[&ray["shape"]];
+        let (placed, certified) = (&surface.placed, &surface.certified);
         let hit = placed.first_hit(&query(ray), &mut workspace, &mut tally);
         let ImplicitAnswer::Found(hit) = hit else {
             panic!("{}: no first hit", row["id"]);
@@ -182,24 +172,20 @@ fn second_hits() {
             t_min: 1.0 / (1u64 << 24) as f64,
             ..from_zero
         };
+        // The t of a hit, and whether there is none for certain.
         let printed = match placed.first_hit(&again, &mut workspace, &mut tally) {
-            ImplicitAnswer::Found(hit) => Some(Some(hit.t)),
-            ImplicitAnswer::Absent => Some(None),
-            ImplicitAnswer::Undecided => None,
+            ImplicitAnswer::Found(hit) => (Some(hit.t), false),
+            other => (None, other == ImplicitAnswer::Absent),
         };
         let mut packet = packet([from_zero]);
         packet.leaving = 1;
         let answers = certified.first_hits(&packet, HITS, &mut workspace);
-        let leaving = match (answers.found & 1, answers.absent & 1) {
-            (1, _) => Some(Some(answers.t[0])),
-            (_, 1) => Some(None),
-            _ => None,
-        };
+        let found = answers.found & 1 == 1;
+        let leaving = (found.then_some(answers.t[0]), answers.absent & 1 == 1);
         for answer in [printed, leaving] {
             let right = match answer {
-                Some(Some(t)) => row["hit2"] == "1" && (t - number(row, "t2")).abs() < 1e-5,
-                Some(None) => row["hit2"] == "0",
-                None => false,
+                (Some(t), _) => row["hit2"] == "1" && (t - number(row, "t2")).abs() < 1e-5,
+                (None, absent) => absent && row["hit2"] == "0",
             };
             if !right {
                 faults.push(format!("{} {answer:?} {}", row["id"], row["t2"]));
@@ -213,12 +199,8 @@ fn second_hits() {
 pub fn known(answers: &Answers, lane: usize) -> ([bool; 2], [u64; 3], u32, Tier) {
     let bits = [answers.found, answers.absent].map(|set| set >> lane & 1 == 1);
     let t = [answers.t, answers.low, answers.high].map(|t| t[lane].to_bits());
-    (
-        bits,
-        if bits[0] { t } else { [0; 3] },
-        answers.multiplicity[lane],
-        answers.tiers[lane],
-    )
+    let t = if bits[0] { t } else { [0; 3] };
+    (bits, t, answers.multiplicity[lane], answers.tiers[lane])
 }
 
 /// Rays have the same answers in company as alone, on every instruction set.
@@ -231,25 +213,21 @@ fn full_packets_agree_with_single_rays() {
         let certified = &surface.certified;
         let queries = table.iter().filter(|row| row["shape"] == *name).map(query);
         let queries: Vec<Query> = queries.collect();
-        for (rays, sharp) in queries
-            .chunks(WIDTH)
-            .flat_map(|rays| [(rays, false), (rays, true)])
-        {
+        let efforts = |rays| [(rays, false), (rays, true)];
+        for (rays, sharp) in queries.chunks(WIDTH).flat_map(efforts) {
             let effort = Effort { sharp, exact: true };
-            let alone = rays
-                .iter()
-                .map(|ray| certified.first_hits(&packet([*ray]), effort, &mut workspaces[0]));
-            let alone: Vec<Answers> = alone.collect();
+            let ask = |rays: &[Query], workspace: &mut Workspace| {
+                certified.first_hits(&packet(rays.iter().copied()), effort, workspace)
+            };
+            let rays_alone = rays.chunks(1);
+            let alone: Vec<_> = rays_alone
+                .map(|ray| known(&ask(ray, &mut workspaces[0]), 0))
+                .collect();
             for workspace in &mut workspaces {
-                let together =
-                    certified.first_hits(&packet(rays.iter().copied()), effort, workspace);
+                let together = ask(rays, workspace);
                 for (lane, alone) in alone.iter().enumerate() {
                     let set = workspace.instructions.name();
-                    assert_eq!(
-                        known(&together, lane),
-                        known(alone, 0),
-                        "{name}, {set} lane {lane}"
-                    );
+                    assert_eq!(known(&together, lane), *alone, "{name}, {set} lane {lane}");
                 }
             }
         }

@@ -4,10 +4,12 @@
 use std::f64::consts::TAU;
 
 use etalon_doors::{functions, words};
+use glam::DVec3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-use crate::lanes_support::{PRECISIONS, Precision, everywhere, on_each};
+use crate::lanes_support::{PRECISIONS, Precision, axes, everywhere, on_each};
+use crate::shape_ladder::cubed;
 
 /// A unit in the last place of numbers in [1, 2).
 fn ulp_of_one(precision: Precision) -> f64 {
@@ -80,14 +82,10 @@ fn sine_and_cosine_are_within_their_bounds() {
 
 #[test]
 fn the_logarithm_is_within_its_bound() {
-    for (precision, lowest, highest) in [
-        (Precision::Single, -126, 127),
-        (Precision::Double, -1022, 1023),
-    ] {
-        let mut x: Vec<f64> = (0..200_000)
-            .map(|i| 0.5 + f64::from(i) / 80_000.0)
-            .collect();
-        for e in lowest..=highest {
+    for (precision, highest) in [(Precision::Single, 127), (Precision::Double, 1023)] {
+        let grid = (0..200_000).map(|i| 0.5 + f64::from(i) / 80_000.0);
+        let mut x: Vec<f64> = grid.collect();
+        for e in 1 - highest..=highest {
             let power = libm::exp2(f64::from(e));
             x.extend([1.0, 1.0 + 1e-7, 1.2, 1.414, 1.415, 1.7, 1.999_999].map(|m| m * power));
         }
@@ -99,12 +97,10 @@ fn the_logarithm_is_within_its_bound() {
         let [y] = everywhere(|set| functions::logarithm(set, precision, [&x]));
         let mut worst = 0.0_f64;
         for (&x, &y) in x.iter().zip(&y) {
-            let truth = libm::log(x);
-            if truth == 0.0 {
-                assert_eq!(y, 0.0);
-                continue;
+            match libm::log(x) {
+                0.0 => assert_eq!(y, 0.0),
+                truth => worst = worst.max((y - truth).abs() / ulp(precision, truth)),
             }
-            worst = worst.max((y - truth).abs() / ulp(precision, truth));
         }
         println!("{precision:?}: ln {worst} ulp");
         // libm's own half unit is in the figure for f64.
@@ -128,9 +124,7 @@ fn the_angle_is_within_its_bound() {
         }
         let special = [0.0, -0.0, 1.0, -1.0, 1e-12, -1e-12, 1e12, -1e12];
         for y in special {
-            for x in special {
-                add(y, x);
-            }
+            special.iter().for_each(|x| add(y, *x));
         }
         let [turns] = everywhere(|set| functions::angle(set, precision, [&ys, &xs]));
         let mut worst = 0.0_f64;
@@ -156,35 +150,27 @@ fn the_angle_is_within_its_bound() {
 fn frames_are_orthonormal_and_right_handed() {
     let mut rng = Pcg64Mcg::seed_from_u64(11);
     let mut vectors = Vec::new();
-    for axis in 0..3 {
-        for sign in [1.0, -1.0] {
-            let mut v = [0.0, -0.0, 0.0];
-            v[axis] = sign;
-            vectors.push(v);
-        }
+    for (axis, sign) in [0, 1, 2]
+        .into_iter()
+        .flat_map(|axis| [(axis, 1.0), (axis, -1.0)])
+    {
+        let mut v = DVec3::new(0.0, -0.0, 0.0);
+        v[axis] = sign;
+        vectors.push(v);
     }
     // Near the pole where the formula divides by 1 + z.
-    vectors.extend([[1e-9, -1e-9, -1.0], [1e-4, 1e-5, -1.0]]);
-    vectors.extend((0..20_000).map(|_| [0; 3].map(|_| rng.random_range(-1.0..1.0))));
-    let columns = [0, 1, 2].map(|axis| vectors.iter().map(|v| v[axis]).collect::<Vec<f64>>());
+    vectors.extend([DVec3::new(1e-9, -1e-9, -1.0), DVec3::new(1e-4, 1e-5, -1.0)]);
+    vectors.extend((0..20_000).map(|_| cubed(&mut rng)));
+    let [x, y, z] = &axes(&vectors);
     for precision in PRECISIONS {
-        let [x, y, z] = &columns;
         let out = everywhere(|set| functions::frame(set, precision, [x, y, z]));
-        let vector = |k: usize, i: usize| {
-            glam::DVec3::new(out[3 * k][i], out[3 * k + 1][i], out[3 * k + 2][i])
-        };
+        let vector = |k: usize, i: usize| DVec3::from_array([0, 1, 2].map(|j| out[3 * k + j][i]));
         let mut worst = 0.0_f64;
         for i in 0..out[0].len() {
             let [n, s, t, across] = [0, 1, 2, 3].map(|k| vector(k, i));
-            for error in [
-                n.length() - 1.0,
-                s.length() - 1.0,
-                t.length() - 1.0,
-                n.dot(s),
-                n.dot(t),
-                s.dot(t),
-                (across - n).length(),
-            ] {
+            let lengths = [n, s, t].map(|v| v.length() - 1.0);
+            let right = [n.dot(s), n.dot(t), s.dot(t), (across - n).length()];
+            for error in lengths.into_iter().chain(right) {
                 worst = worst.max(error.abs() / precision.roundoff());
             }
         }

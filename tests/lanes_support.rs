@@ -1,6 +1,7 @@
 //! Asking lane code on every instruction set of this machine.
 
 use etalon::Instructions;
+use glam::DVec3;
 
 pub use etalon::inside::math::instructions::Precision;
 
@@ -27,6 +28,11 @@ pub fn everywhere<const O: usize>(ask: impl Fn(Instructions) -> [Vec<f64>; O]) -
         }
     }
     first
+}
+
+/// Vectors as the columns of their coordinates.
+pub fn axes(vectors: &[DVec3]) -> [Vec<f64>; 3] {
+    [0, 1, 2].map(|axis| vectors.iter().map(|v| v[axis]).collect())
 }
 
 /// Whether both are the same bits; any NaN is as good as another.

@@ -23,6 +23,7 @@ use rand_pcg::Pcg64Mcg;
 use rayon::prelude::*;
 
 use crate::lanes_support::{PRECISIONS, Precision, on_each, same_bits};
+use crate::sampling::{evenness, turn};
 use crate::statistics_support::{chi_square, moments, t_test};
 use crate::truth_file::{number, truth, vector};
 
@@ -40,6 +41,7 @@ enum Kind {
     Ellipsoid,
     /// A cylinder under any map.
     Barrel,
+    Point,
 }
 
 /// A canonical shape, of half width or radius 1, whose axes are mapped to these.
@@ -67,7 +69,7 @@ impl Light {
         match self.kind {
             Kind::Rectangle | Kind::Parallelogram => ShapeKind::Rectangle,
             Kind::Disk => ShapeKind::Disk,
-            Kind::Sphere | Kind::Ellipsoid => ShapeKind::Sphere,
+            Kind::Sphere | Kind::Ellipsoid | Kind::Point => ShapeKind::Sphere,
             Kind::Cube => ShapeKind::Cube,
             Kind::Cylinder | Kind::Barrel => ShapeKind::Cylinder,
         }
@@ -92,6 +94,7 @@ impl Light {
                 LightShape::Mapped(MappedLight::ellipsoid(centre, self.linear(), both))
             }
             Kind::Barrel => LightShape::Mapped(MappedLight::cylinder(centre, self.linear(), both)),
+            Kind::Point => LightShape::Point(PointLight::new(centre)),
         }
     }
 
@@ -226,57 +229,49 @@ fn settings() -> Vec<(Light, Vec<DVec3>)> {
         DVec3::new(-0.1, 0.8, 0.2),
         DVec3::new(0.05, -0.1, 0.3),
     ];
-    let at = |x: f64, y: f64, z: f64| centre + x * sides[0] + y * sides[1] + z * sides[2];
-    let cube = vec![
-        // Seen: one face, two, three; from far; grazing; from inside.
-        at(0.2, 0.1, 3.0),
-        at(2.5, 0.1, 2.0),
-        at(2.0, 2.0, 2.0),
-        at(-30.0, 20.0, 10.0),
-        at(1.01, 2.5, 0.0),
-        at(0.3, -0.2, 0.6),
-        at(0.0, 0.0, 0.98),
+    let at =
+        |[x, y, z]: [f64; 3], axes: [DVec3; 3]| centre + x * axes[0] + y * axes[1] + z * axes[2];
+    // Seen: one face, two, three; from far; grazing; from inside.
+    let cube = [
+        [0.2, 0.1, 3.0],
+        [2.5, 0.1, 2.0],
+        [2.0, 2.0, 2.0],
+        [-30.0, 20.0, 10.0],
+        [1.01, 2.5, 0.0],
+        [0.3, -0.2, 0.6],
+        [0.0, 0.0, 0.98],
     ];
+    let cube = cube.map(|place| at(place, sides)).to_vec();
     let long = 0.6 * normal.cross(half[0]).normalize();
     let round = [0.4 * half[0].normalize(), 0.4 * normal, long];
-    let about = |x: f64, y: f64, z: f64| centre + x * round[0] + y * round[1] + z * round[2];
-    let cylinder = vec![
-        // Seen: the side, a cap, both; from far; grazing a cap; from inside, and on the axis.
-        about(2.0, 1.0, 0.3),
-        about(0.3, -0.2, -2.5),
-        about(-1.5, 2.0, 1.8),
-        about(30.0, -50.0, 40.0),
-        about(2.5, 0.3, 1.01),
-        about(0.4, 0.5, -0.6),
-        about(0.0, 0.0, 0.9),
-    ];
-    // The same places, over and inside of images of the round shapes.
+    // Seen: the side, a cap, both; from far; grazing a cap; from inside, and on the axis.
+    let about_a_tube = |axes: [DVec3; 3], above: f64| {
+        let places = [
+            [2.0, 1.0, 0.3],
+            [0.3, -0.2, -2.5],
+            [-1.5, 2.0, 1.8],
+            [30.0, -50.0, 40.0],
+            [2.5, 0.3, above],
+            [0.4, 0.5, -0.6],
+            [0.0, 0.0, 0.9],
+        ];
+        places.map(|place| at(place, axes)).to_vec()
+    };
     let ellipsoid = [1.05, 1.5, 4.0, 60.0, 0.0, 0.3, 0.9, 0.98]
-        .map(|d| at(0.6 * d, -0.48 * d, 0.64 * d))
+        .map(|d| at([0.6 * d, -0.48 * d, 0.64 * d], sides))
         .to_vec();
-    let barrel = vec![
-        at(2.0, 1.0, 0.3),
-        at(0.3, -0.2, -2.5),
-        at(-1.5, 2.0, 1.8),
-        at(30.0, -50.0, 40.0),
-        at(2.5, 0.3, 1.02),
-        at(0.4, 0.5, -0.6),
-        at(0.0, 0.0, 0.9),
-    ];
-    let flat_light = |kind| Light::flat(kind, centre, half);
+    let flat_light = |kind, half| Light::flat(kind, centre, half);
     let light = |kind, axes| Light::new(kind, centre, axes);
+    let upright = [half[0], upright];
     vec![
-        (
-            Light::flat(Kind::Rectangle, centre, [half[0], upright]),
-            flat.clone(),
-        ),
-        (flat_light(Kind::Parallelogram), flat.clone()),
-        (flat_light(Kind::Disk), flat),
+        (flat_light(Kind::Rectangle, upright), flat.clone()),
+        (flat_light(Kind::Parallelogram, half), flat.clone()),
+        (flat_light(Kind::Disk, half), flat),
         (Light::sphere(centre, radius), sphere),
         (light(Kind::Cube, sides), cube),
-        (light(Kind::Cylinder, round), cylinder),
+        (light(Kind::Cylinder, round), about_a_tube(round, 1.01)),
         (light(Kind::Ellipsoid, sides), ellipsoid),
-        (light(Kind::Barrel, sides), barrel),
+        (light(Kind::Barrel, sides), about_a_tube(sides, 1.02)),
     ]
 }
 
@@ -297,10 +292,8 @@ fn both_strategies_see_the_same_density() {
             for (sample, asked) in drawn.iter().zip(asked) {
                 assert!(sample.valid && sample.pdf > 0.0, "{light:?} {p} {sample:?}");
                 // Not within 1e-5 of each other but equal: they are the same function.
-                assert!(
-                    same_bits(sample.pdf, asked),
-                    "{precision:?} {light:?} {p} {sample:?} {asked}"
-                );
+                let same = same_bits(sample.pdf, asked);
+                assert!(same, "{precision:?} {light:?} {p} {sample:?} {asked}");
             }
         }
     }
@@ -344,35 +337,31 @@ fn densities_are_those_of_the_geometry() {
 
 /// Equal-area bins of the sphere of directions about an axis.
 struct Bins {
-    rows: usize,
-    columns: usize,
     axis: [DVec3; 3],
     /// 1 − cos of the cone covered.
     height: f64,
 }
 
 impl Bins {
+    /// Rows, and columns of each.
+    const SIDE: usize = 12;
+
     fn about(axis: DVec3, height: f64) -> Self {
         let z = axis.normalize();
         let x = z.any_orthonormal_vector();
-        Self {
-            rows: 12,
-            columns: 12,
-            axis: [x, z.cross(x), z],
-            height,
-        }
+        let axis = [x, z.cross(x), z];
+        Self { axis, height }
     }
 
     fn of(&self, direction: DVec3) -> Option<usize> {
         let [x, y, z] = self.axis.map(|a| a.dot(direction));
         let h = (x * x + y * y) / (1.0 + z);
-        let row = (h / self.height * self.rows as f64).floor();
-        if row >= self.rows as f64 {
+        let row = (h / self.height * Self::SIDE as f64).floor();
+        if row >= Self::SIDE as f64 {
             return None;
         }
-        let turn = libm::atan2(y, x) / (2.0 * PI) + 0.5;
-        let column = ((turn * self.columns as f64) as usize).min(self.columns - 1);
-        Some(row as usize * self.columns + column)
+        let column = ((turn(x, y) * Self::SIDE as f64) as usize).min(Self::SIDE - 1);
+        Some(row as usize * Self::SIDE + column)
     }
 
     /// A direction by equal-area coordinates in [0, 1)².
@@ -403,23 +392,23 @@ fn verdict(
     let farthest = cosines.fold(1.0, f64::min);
     let bins = Bins::about(axis, ((1.0 - farthest) * 1.05 + 1e-6).min(2.0));
     let fine = 40;
-    let (rows, columns) = (bins.rows * fine, bins.columns * fine);
+    let side = Bins::SIDE * fine;
     let placed = light.placed();
     let cell = |k: usize| {
-        let (i, j) = (k / columns, k % columns);
-        let middle = |i: usize, of: usize| (i as f64 + 0.5) / of as f64;
-        let direction = bins.direction(middle(i, rows), middle(j, columns));
+        let (i, j) = (k / side, k % side);
+        let middle = |i: usize| (i as f64 + 0.5) / side as f64;
+        let direction = bins.direction(middle(i), middle(j));
         let (_, normal) = hit(&placed, p, direction)?;
-        let place = i / fine * bins.columns + j / fine;
+        let place = i / fine * Bins::SIDE + j / fine;
         Some((place, (direction, normal)))
     };
-    let cells = (0..rows * columns).into_par_iter().filter_map(cell);
+    let cells = (0..side * side).into_par_iter().filter_map(cell);
     let (places, directions): (Vec<usize>, Vec<(DVec3, DVec3)>) = cells.unzip();
     let densities = light.ask(Precision::Double, |light| {
         light_densities(Instructions::best(), light, p, &directions)
     });
-    let area = 2.0 * PI * bins.height / (rows * columns) as f64;
-    let mut expected = vec![0.0; bins.rows * bins.columns];
+    let area = 2.0 * PI * bins.height / (side * side) as f64;
+    let mut expected = vec![0.0; Bins::SIDE * Bins::SIDE];
     for (&place, &pdf) in places.iter().zip(&densities) {
         expected[place] += pdf * area;
     }
@@ -495,19 +484,16 @@ fn grazing_receivers_see_all_of_a_flat_light_alike() {
             }
             let inverse = light.linear().inverse();
             let variates = independent(&mut rng, 20_000);
-            let mut counts = vec![0; 144];
-            for sample in &best(precision, (light, p), &variates) {
+            let drawn = best(precision, (light, p), &variates);
+            let places = drawn.iter().map(|sample| {
                 let at = p + sample.distance * sample.direction - light.centre;
                 let [x, y, _] = (inverse * at).to_array();
-                let (a, b) = if light.kind == Kind::Disk {
-                    (x * x + y * y, libm::atan2(y, x) / (2.0 * PI) + 0.5)
-                } else {
-                    ((x + 1.0) / 2.0, (y + 1.0) / 2.0)
-                };
-                let cell = |x: f64| ((x * 12.0) as usize).min(11);
-                counts[cell(a) * 12 + cell(b)] += 1;
-            }
-            let p_value = chi_square(&counts, &[20_000.0 / 144.0; 144]);
+                match light.kind {
+                    Kind::Disk => (x * x + y * y, turn(x, y)),
+                    _ => ((x + 1.0) / 2.0, (y + 1.0) / 2.0),
+                }
+            });
+            let p_value = evenness::<12>(places);
             assert!(p_value > level, "{light:?} {p}: {p_value:e}");
         }
     }
@@ -620,22 +606,15 @@ fn closed_forms() -> Vec<(String, Light, (DVec3, DVec3), f64)> {
     ];
     let slim = [block[0], DVec3::new(0.3, 0.6, 0.0), block[2]];
     let tube = [DVec3::X, DVec3::Y, 1.5 * DVec3::Z];
-    let centre = DVec3::new(0.1, 0.1, 0.3);
-    let ball = Light::sphere(DVec3::new(0.1, 0.2, -0.3), 1.0);
-    for (light, at) in [
-        (ball, upward),
-        (
-            Light::new(Kind::Cube, DVec3::new(0.2, 0.1, 0.0), block),
-            upward,
-        ),
-        (
-            Light::new(Kind::Cylinder, DVec3::new(0.2, 0.1, 0.3), tube),
-            lean,
-        ),
-        (Light::new(Kind::Ellipsoid, centre, slim), lean),
-        (Light::new(Kind::Barrel, centre, slim), lean),
+    for (kind, centre, axes, at) in [
+        (Kind::Sphere, [0.1, 0.2, -0.3], DVec3::AXES, upward),
+        (Kind::Cube, [0.2, 0.1, 0.0], block, upward),
+        (Kind::Cylinder, [0.2, 0.1, 0.3], tube, lean),
+        (Kind::Ellipsoid, [0.1, 0.1, 0.3], slim, lean),
+        (Kind::Barrel, [0.1, 0.1, 0.3], slim, lean),
     ] {
-        all.push((format!("inside, {:?}", light.kind), light, at, PI));
+        let light = Light::new(kind, DVec3::from_array(centre), axes);
+        all.push((format!("inside, {kind:?}"), light, at, PI));
     }
     // A receiver on the axis sees the near cap alone, a disk: π sin² of its half-angle.
     let light = Light::new(Kind::Cylinder, 3.5 * DVec3::Z, tube);
@@ -660,39 +639,24 @@ fn irradiances_match_the_closed_forms() {
             assert!(relative < 2e-3, "{name}: {relative}");
             // Rounding may bias a mean by some units where the noise is smaller than that.
             let rounding = (mean / irradiance - 1.0).abs() < 50.0 * precision.roundoff();
-            assert!(
-                p > level || rounding,
-                "{name}: p = {p:e}, {mean} for {irradiance}"
-            );
+            let right = p > level || rounding;
+            assert!(right, "{name}: p = {p:e}, {mean} for {irradiance}");
             // Planted: a density that is a per cent too large.
             let wrong: Vec<f64> = estimates.iter().map(|e| e / 1.01).collect();
-            assert!(
-                t_test(&wrong, *irradiance) < level,
-                "{name} would not notice 1 %"
-            );
+            let noticed = t_test(&wrong, *irradiance) < level;
+            assert!(noticed, "{name} would not notice 1 %");
         }
     }
 }
 
 #[test]
 fn points_fall_off_with_the_square() {
-    fn sample<T: Scalar>(
-        at: DVec3,
-        ask: impl Fn(&LightShape<T>) -> Vec<LightSample>,
-    ) -> LightSample {
-        ask(&LightShape::Point(PointLight::new(at)))[0]
-    }
     let t = truth("point_light");
-    let at = DVec3::Z * t.of("h");
+    let light = Light::new(Kind::Point, DVec3::Z * t.of("h"), DVec3::AXES);
     for precision in PRECISIONS {
         for row in t.rows("per_point") {
             let p = DVec3::X * number(&row["x"]);
-            let ask =
-                |light: AnyLight| light_samples(Instructions::best(), light, p, &[[0.5, 0.5]]);
-            let drawn = match precision {
-                Precision::Single => sample(at, |light| ask(Made::Single(light))),
-                Precision::Double => sample(at, |light| ask(Made::Double(light))),
-            };
+            let drawn = best(precision, (light, p), &[[0.5, 0.5]])[0];
             let irradiance = t.of("I") * drawn.direction.z / drawn.pdf;
             let error = (irradiance / number(&row["E"]) - 1.0).abs();
             assert!(error < 6.0 * precision.roundoff(), "{error:e}");

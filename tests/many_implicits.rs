@@ -1,7 +1,5 @@
 //! Many implicit surfaces: their hits are those of each asked alone, and a ray asks a few of them.
 
-use std::fmt::Write as _;
-
 use etalon::inside::shape::Ray;
 use etalon::{First, Plan, Scene, Tracer};
 use glam::DVec3;
@@ -9,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::shape_ladder::cubed;
-use crate::support::rendered;
+use crate::support::{object, rendered};
 
 const HEAD: &str = r#"
 camera = { from = [0, 0, 9], to = [0, 0, 0], fov = 30 }
@@ -32,19 +30,12 @@ fn cloud(objects: usize, ball_every: usize) -> Scene {
     for i in 0..objects {
         let [x, y, z] = (2.0 * cubed(&mut rng)).to_array();
         let [a, b]: [f64; 2] = rng.random();
-        let shape = if i % ball_every == 0 {
-            "{ sphere = {} }"
-        } else {
-            "{ implicit = \"torus\" }"
-        };
-        write!(
-            text,
-            "\n[[object]]\nshape = {shape}\nmaterial = \"white\"\ntransform = [{{ scale = {size} }}, \
-             {{ rotate_x = {} }}, {{ rotate_y = {} }}, {{ translate = [{x}, {y}, {z}] }}]\n",
-            360.0 * a,
-            360.0 * b,
-        )
-        .unwrap();
+        let is_ball = usize::from(i % ball_every == 0);
+        let shape = ["{ implicit = \"torus\" }", "\"sphere\""][is_ball];
+        let [a, b] = [360.0 * a, 360.0 * b];
+        let turns = format!("{{ rotate_x = {a} }}, {{ rotate_y = {b} }}");
+        let place = format!("{{ scale = {size} }}, {turns}, {{ translate = [{x}, {y}, {z}] }}");
+        text += &object(shape, "white", &place);
     }
     Scene::parse(&text).unwrap()
 }

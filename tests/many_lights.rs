@@ -4,36 +4,30 @@ use etalon::inside::plan::Tables;
 use etalon::inside::render::{Request, Unwatched, render};
 use etalon::{Estimate, Plan, Scene};
 
-/// A floor under a lamp of 2 × 2 in so many tiles to a side, a third of which shine four times as
-/// bright: how the lamp is cut decides how many lights there are to choose from.
-fn scene(tiles: u32) -> Scene {
-    let mut text = String::from(
-        r#"
+use crate::support::object;
+
+const HEAD: &str = r#"
 camera = { from = [0, 1, 3], to = [0, 0, 0], fov = 50 }
 image = { size = [8, 8], spp = 64, max_depth = 2 }
 materials.floor = { diffuse = 0.5 }
 materials.lamp = { emit = 1 }
 materials.bright = { emit = 4 }
-[[object]]
-shape = { rectangle = { size = [4, 4] } }
-material = "floor"
-transform = [{ rotate_x = -90 }]
-"#,
-    );
+"#;
+
+/// A floor under a lamp of 2 × 2 in so many tiles to a side, a third of which shine four times as
+/// bright: how the lamp is cut decides how many lights there are to choose from.
+fn scene(tiles: u32) -> Scene {
+    let floor = "{ rectangle = { size = [4, 4] } }";
+    let mut text = HEAD.to_owned() + &object(floor, "floor", "{ rotate_x = -90 }");
     let side = 2.0 / f64::from(tiles);
     for i in 0..tiles * tiles {
         let place = |k: u32| (f64::from(k) + 0.5) * side - 1.0;
         let (x, z) = (place(i % tiles), place(i / tiles));
         // Bright are the places on the left, a third of the lamp in any number of tiles.
-        let material = if 3 * (i % tiles) < tiles {
-            "bright"
-        } else {
-            "lamp"
-        };
-        text += &format!(
-            "[[object]]\nshape = {{ rectangle = {{ size = [{side}, {side}] }} }}\nmaterial = \"{material}\"\n\
-             transform = [{{ rotate_x = 90 }}, {{ translate = [{x}, 2, {z}] }}]\n"
-        );
+        let material = ["lamp", "bright"][usize::from(3 * (i % tiles) < tiles)];
+        let shape = format!("{{ rectangle = {{ size = [{side}, {side}] }} }}");
+        let place = format!("{{ rotate_x = 90 }}, {{ translate = [{x}, 2, {z}] }}");
+        text += &object(&shape, material, &place);
     }
     Scene::parse(&text).unwrap()
 }

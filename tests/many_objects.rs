@@ -19,6 +19,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::lanes_support::{PRECISIONS, Precision, on_each};
 use crate::shape_ladder::cubed;
+use crate::support::object;
 
 const HEAD: &str = r#"
 camera = { from = [0, 0, 6], to = [0, 0, 0], fov = 40 }
@@ -38,9 +39,11 @@ transform = [{ rotate_x = 90 }, { translate = [0, 2, 0] }]
 "#;
 
 fn ball([x, y, z]: [f64; 3], radius: f64) -> String {
-    format!(
-        "[[object]]\nshape = {{ sphere = {{ radius = {radius} }} }}\nmaterial = \"white\"\n\
-         transform = [{{ translate = [{x}, {y}, {z}] }}]\n"
+    let shape = format!("{{ sphere = {{ radius = {radius} }} }}");
+    object(
+        &shape,
+        "white",
+        &format!("{{ translate = [{x}, {y}, {z}] }}"),
     )
 }
 
@@ -61,17 +64,19 @@ fn cloud(balls: usize, others: usize) -> Scene {
     }
     for i in 0..others {
         let shape = [
-            "cube = { side = 0.3 }",
-            "cylinder = { radius = 0.2, height = 0.4 }",
-            "disk = { radius = 0.3 }",
-            "rectangle = { size = [0.4, 0.3] }",
-            "sphere = { radius = 0.2 }",
+            "{ cube = { side = 0.3 } }",
+            "{ cylinder = { radius = 0.2, height = 0.4 } }",
+            "{ disk = { radius = 0.3 } }",
+            "{ rectangle = { size = [0.4, 0.3] } }",
+            "{ sphere = { radius = 0.2 } }",
         ][i % 5];
         let [x, y, z] = (2.0 * cubed(&mut rng)).to_array();
         let angle = [0.0, 90.0, 360.0 * rng.random::<f64>()][i % 3];
-        text += &format!(
-            "[[object]]\nshape = {{ {shape} }}\nmaterial = \"white\"\ntransform = [\
-             {{ rotate_x = {angle} }}, {{ scale = [1, 1, 1.5] }}, {{ translate = [{x}, {y}, {z}] }}]\n"
+        let place = format!("{{ scale = [1, 1, 1.5] }}, {{ translate = [{x}, {y}, {z}] }}");
+        text += &object(
+            shape,
+            "white",
+            &format!("{{ rotate_x = {angle} }}, {place}"),
         );
     }
     Scene::parse(&text).unwrap()
@@ -156,7 +161,12 @@ fn answers(set: Instructions, model: AnyModel, way: Way, rays: &[Ray]) -> Vec<An
         limit: 2.5,
         except: 1,
     };
-    let first: Vec<Question> = rays.iter().map(|&ray| free(ray)).collect();
+    let free = |&ray: &Ray| Question {
+        ray,
+        leaving: NOTHING,
+        inward: false,
+    };
+    let first: Vec<Question> = rays.iter().map(free).collect();
     let mut all = models::answers(set, model, &first, asking);
     let leaves = |(i, (ray, answer)): (usize, (&Ray, &Answer))| {
         let hit = answer.t.is_finite();
@@ -169,15 +179,6 @@ fn answers(set: Instructions, model: AnyModel, way: Way, rays: &[Ray]) -> Vec<An
     let second: Vec<Question> = rays.iter().zip(&all).enumerate().map(leaves).collect();
     all.extend(models::answers(set, model, &second, asking));
     all
-}
-
-/// A ray that leaves nothing.
-fn free(ray: Ray) -> Question {
-    Question {
-        ray,
-        leaving: NOTHING,
-        inward: false,
-    }
 }
 
 /// From where a ray arrives, in another direction.
@@ -272,10 +273,8 @@ fn balls_are_found_from_afar() {
     for precision in PRECISIONS {
         for (name, sets) in near(&scene, precision, &aimed) {
             for ((ball, _), near) in aimed.iter().zip(sets) {
-                assert!(
-                    near >> ball & 1 == 1,
-                    "{precision:?} {name}: ball {ball} of {near:b}"
-                );
+                let found = near >> ball & 1 == 1;
+                assert!(found, "{precision:?} {name}: ball {ball} of {near:b}");
             }
         }
         // No more is asked than comes near: rays past all balls ask none.

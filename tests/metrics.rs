@@ -11,27 +11,21 @@ const R: [f64; 4] = [1.0, 1.0, 4.0, 2.0];
 #[track_caller]
 fn close(found: f64, expected: f64) {
     let tolerance = 8.0 * f64::EPSILON * expected.abs().max(1.0);
-    assert!(
-        (found - expected).abs() <= tolerance,
-        "{found} instead of {expected}"
-    );
+    let off = (found - expected).abs();
+    assert!(off <= tolerance, "{found} instead of {expected}");
 }
 
 #[test]
 fn errors_of_four_pixels() {
     // Errors 0, 1, −1, 0; squares 0, 1, 1, 0 with the unbiased variance 1/3.
-    close(mean_error(&X, &R).value, 0.0);
-    close(
-        mean_error(&X, &R).standard_error,
-        (2.0f64 / 3.0 / 4.0).sqrt(),
-    );
-    close(mse(&X, &R).value, 0.5);
-    close(mse(&X, &R).standard_error, (1.0f64 / 3.0 / 4.0).sqrt());
-    close(rmse(&X, &R).value, 0.5f64.sqrt());
-    close(
-        rmse(&X, &R).standard_error,
-        (1.0f64 / 12.0).sqrt() / (2.0 * 0.5f64.sqrt()),
-    );
+    for (found, value, square) in [
+        (mean_error(&X, &R), 0.0, 2.0 / 3.0 / 4.0),
+        (mse(&X, &R), 0.5, 1.0 / 3.0 / 4.0),
+        (rmse(&X, &R), 0.5f64.sqrt(), 1.0 / 12.0 / (4.0 * 0.5)),
+    ] {
+        close(found.value, value);
+        close(found.standard_error, f64::sqrt(square));
+    }
     // mean(r) = 2, ε = 4e-4 and 2e-2.
     let expected = (1.0 / 1.0004 + 1.0 / 16.0004) / 4.0;
     close(relmse(&X, &R, None).value, expected);

@@ -14,6 +14,7 @@ use etalon_doors::Made;
 use etalon_doors::models::path_lengths;
 
 use crate::oracle_support::{Row, number, ray, rows};
+use crate::support::object;
 
 /// The error that ends a count of bounces.
 const ERROR: f64 = 1e-6;
@@ -46,10 +47,8 @@ impl Chain {
     /// Both mirrors, seen from where the chain begins.
     fn plan(&self, precision: &str) -> Plan {
         let mirror = |x: f64| {
-            format!(
-                "[[object]]\nshape = \"sphere\"\nmaterial = \"mirror\"\n\
-                 transform = [{{ translate = [{x:?}, 0, 0] }}]\n"
-            )
+            let place = format!("{{ translate = [{x:?}, 0, 0] }}");
+            object("\"sphere\"", "mirror", &place)
         };
         let text = format!(
             "camera = {{ from = [0, 0, 0], to = [1, 0, 0], fov = 40 }}\n\

@@ -6,7 +6,7 @@ use etalon::inside::math::lanes::Scalar;
 use etalon::inside::plan::Tables;
 use etalon::{Plan, Scene};
 
-use crate::support::{pixel_bits, rendered};
+use crate::support::{object, pixel_bits, rendered};
 
 /// A room whose walls have everything on one side, with a lamp below its ceiling; objects 0 to 3.
 const ROOM: &str = r#"
@@ -15,31 +15,26 @@ image = { size = [24, 24], spp = 8, max_depth = 4, sampler = "independent" }
 materials.white = { diffuse = 0.75 }
 materials.silver = { mirror = "Ag" }
 materials.lamp = { diffuse = 0.1, emit = 1 }
-[[object]]
-shape = { rectangle = { size = [2, 2] } }
-material = "white"
-transform = [{ rotate_x = -90 }, { translate = [0, -1, 0] }]
-[[object]]
-shape = { rectangle = { size = [2, 2] } }
-material = "white"
-transform = [{ translate = [0, 0, -1] }]
-[[object]]
-shape = { rectangle = { size = [2, 2] } }
-material = "white"
-transform = [{ rotate_x = 90 }, { translate = [0, 1, 0] }]
-[[object]]
-shape = { rectangle = { size = [0.5, 0.5] } }
-material = "lamp"
-transform = [{ rotate_x = 90 }, { translate = [0, 0.99, 0] }]
 "#;
 
-/// A box in the room.
-const CUBE: &str = r#"
-[[object]]
-shape = { cube = { side = 0.5 } }
-material = "white"
-transform = [{ translate = [-0.3, -0.75, -0.3] }]
-"#;
+/// Its scene file, with more than is in it.
+fn room(more: &str) -> String {
+    let wall = |place: &str| object("{ rectangle = { size = [2, 2] } }", "white", place);
+    let lamp = "{ rotate_x = 90 }, { translate = [0, 0.99, 0] }";
+    let objects = [
+        wall("{ rotate_x = -90 }, { translate = [0, -1, 0] }"),
+        wall("{ translate = [0, 0, -1] }"),
+        wall("{ rotate_x = 90 }, { translate = [0, 1, 0] }"),
+        object("{ rectangle = { size = [0.5, 0.5] } }", "lamp", lamp),
+    ];
+    format!("{ROOM}{}{more}", objects.concat())
+}
+
+/// With a box in it, object 4.
+fn room_and_cube() -> String {
+    let place = "{ translate = [-0.3, -0.75, -0.3] }";
+    room(&object("{ cube = { side = 0.5 } }", "white", place))
+}
 
 fn occluders(text: &str) -> Vec<u32> {
     match Plan::new(&Scene::parse(text).unwrap(), false)
@@ -53,33 +48,31 @@ fn occluders(text: &str) -> Vec<u32> {
 
 #[test]
 fn walls_of_a_room_hide_nothing() {
-    assert!(occluders(ROOM).is_empty());
-    assert_eq!(occluders(&format!("{ROOM}{CUBE}")), [4]);
+    assert!(occluders(&room("")).is_empty());
+    assert_eq!(occluders(&room_and_cube()), [4]);
 }
 
 /// Whatever ends of shadow rays there are behind a wall, it hides the light from there: a diffuse
 /// object poking through, one wholly behind, a lamp behind. What samples no light does not count.
 #[test]
 fn what_reaches_behind_a_wall_makes_it_count() {
-    let ball = "sphere = { radius = 0.25 }";
+    let ball = "{ sphere = { radius = 0.25 } }";
     for (shape, material, at, hiding) in [
         (ball, "white", "[0, 0, -1.1]", &[1, 4][..]),
-        ("cube = { side = 0.2 }", "white", "[0, 1.5, 0]", &[2, 4]),
+        ("{ cube = { side = 0.2 } }", "white", "[0, 1.5, 0]", &[2, 4]),
         // Of two lamps, each can hide the other from what is on its far side: the ceiling is above one.
         (
-            "sphere = { radius = 0.1 }",
+            "{ sphere = { radius = 0.1 } }",
             "lamp",
             "[0.2, -1.5, 0.1]",
             &[0, 3, 4],
         ),
-        ("plane = {}", "white", "[0, 0, -1.5]", &[0, 1, 2]),
+        ("\"plane\"", "white", "[0, 0, -1.5]", &[0, 1, 2]),
         (ball, "silver", "[0, 0, -1.1]", &[4]),
     ] {
-        let text = format!(
-            "{ROOM}[[object]]\nshape = {{ {shape} }}\nmaterial = \"{material}\"\n\
-             transform = [{{ translate = {at} }}]\n"
-        );
-        assert_eq!(occluders(&text), hiding, "{shape} of {material} at {at}");
+        let thing = object(shape, material, &format!("{{ translate = {at} }}"));
+        let found = occluders(&room(&thing));
+        assert_eq!(found, hiding, "{shape} of {material} at {at}");
     }
 }
 
@@ -91,8 +84,8 @@ fn lights_without_a_surface_count_as_ends() {
         // Light from above and in front; the back wall and the floor cannot be in its way.
         ("direction = [0, -1, -1]\nirradiance = 1", &[2, 3]),
     ] {
-        let text = format!("{ROOM}[[light]]\n{light}\n");
-        assert_eq!(occluders(&text), hiding, "{light}");
+        let found = occluders(&room(&format!("[[light]]\n{light}\n")));
+        assert_eq!(found, hiding, "{light}");
     }
 }
 
@@ -115,8 +108,8 @@ fn bits(scene: &Scene, hiding: Option<&[u32]>) -> Vec<[[u64; 3]; 2]> {
 #[test]
 fn what_is_left_out_cannot_show() {
     for precision in ["f32", "f64"] {
-        let text = format!("{ROOM}{CUBE}")
-            .replace("spp = 8", &format!("spp = 8, precision = \"{precision}\""));
+        let text =
+            room_and_cube().replace("spp = 8", &format!("spp = 8, precision = \"{precision}\""));
         let scene = Scene::parse(&text).unwrap();
         let planned = bits(&scene, None);
         assert_eq!(planned, bits(&scene, Some(&[0, 1, 2, 3, 4])), "{precision}");

@@ -1,10 +1,13 @@
 //! Reading the oracle's tables, whose answers come from exact rational arithmetic.
 
 use std::collections::HashMap;
+use std::path::Path;
 
 use etalon::inside::math::affine::Affine;
-use etalon::inside::shape::{Placed, Ray, ShapeKind};
+use etalon::inside::shape::{Placed, Query, Ray, ShapeKind};
 use glam::DVec3;
+
+use crate::support::from_zero;
 
 #[path = "../tools/method/src/finders/shapes.rs"]
 mod shapes;
@@ -26,14 +29,8 @@ pub fn table(text: &str) -> Vec<Row> {
 /// The lines of a file in `tests/data`. In those of rays every number is meant exactly; t has 22
 /// digits, of which the nearest f64 is taken.
 pub fn rows(file: &str) -> Vec<Row> {
-    table(match file {
-        "bounce.csv" => include_str!("data/bounce.csv"),
-        "implicit.csv" => include_str!("data/implicit.csv"),
-        "mirrors.csv" => include_str!("data/mirrors.csv"),
-        "primitives.csv" => include_str!("data/primitives.csv"),
-        "transforms.csv" => include_str!("data/transforms.csv"),
-        other => panic!("no file {other}"),
-    })
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    table(&std::fs::read_to_string(folder.join(file)).unwrap())
 }
 
 pub fn number(row: &Row, name: &str) -> f64 {
@@ -52,6 +49,14 @@ pub fn ray(row: &Row) -> Ray {
     }
 }
 
+/// What a ray of `implicit.csv` asks.
+pub fn query(row: &Row) -> Query {
+    Query {
+        t_min: number(row, "tmin"),
+        ..from_zero(ray(row).origin, ray(row).direction)
+    }
+}
+
 /// The placed shape that each of the primitives' rays is about, with the condition of its matrix.
 pub fn primitives() -> Vec<(Row, Placed, f64)> {
     let transform = |row: &Row| {
@@ -62,14 +67,13 @@ pub fn primitives() -> Vec<(Row, Placed, f64)> {
     };
     let transforms: HashMap<_, _> = rows("transforms.csv").iter().map(transform).collect();
     let placed = |row: Row| {
-        let kind = match row["shape"].as_str() {
-            "sphere" => ShapeKind::Sphere,
-            "cube" => ShapeKind::Cube,
-            "cylinder" => ShapeKind::Cylinder,
-            "rect" => ShapeKind::Rectangle,
-            "disk" => ShapeKind::Disk,
-            other => panic!("unknown shape {other}"),
+        // A rectangle is "rect" there.
+        let is_named = |kind: &&ShapeKind| {
+            format!("{kind:?}")
+                .to_lowercase()
+                .starts_with(&row["shape"])
         };
+        let kind = *ShapeKind::ALL.iter().find(is_named).unwrap();
         let (matrix, condition) = &transforms[&row["transform"]];
         let placed = Placed::new(kind, matrix).unwrap();
         (row, placed, *condition)

@@ -66,7 +66,7 @@ fn object(rng: &mut Pcg64Mcg, sizes: [f64; 3], centre: DVec3) -> String {
 }
 
 fn placed(shape: &str, transform: &str) -> String {
-    format!("[[object]]\nshape = {{ {shape} }}\nmaterial = \"m\"\ntransform = [{transform}]\n")
+    crate::support::object(&format!("{{ {shape} }}"), "m", transform)
 }
 
 fn ball(centre: [f64; 3], radius: f64) -> String {

@@ -51,24 +51,13 @@ fn seed() -> u64 {
     seed.map_or(1, |seed| seed.parse().unwrap())
 }
 
-/// A reference with what is planned for it.
-struct Subject {
-    case: Case,
-    reference: Side,
-    planned: Planned,
-}
-
 #[test]
 fn references_are_of_the_scenes_as_they_are() {
-    let stale: Vec<String> = references()
-        .iter()
-        .filter(|(_, path)| freshness(&Side::read(path).unwrap(), root()) != Freshness::Fresh)
-        .map(|(name, _)| name.clone())
-        .collect();
-    assert!(
-        stale.is_empty(),
-        "stale references, to be made again with tools/reference.py: {stale:?}"
-    );
+    let fresh = |path: &Path| freshness(&Side::read(path).unwrap(), root()) == Freshness::Fresh;
+    let mut stale = references();
+    stale.retain(|(_, path)| !fresh(path));
+    let advice = "stale references, to be made again with tools/reference.py";
+    assert!(stale.is_empty(), "{advice}: {stale:?}");
 }
 
 #[test]
@@ -82,24 +71,32 @@ fn every_reference_is_met() {
         .map(|(case, reference)| reference.channels.len() + 3 * case.regions.len())
         .sum();
     let levels = Levels::shared(LEVEL, cases.len(), most);
-    let subjects: Vec<Subject> = cases
-        .into_iter()
-        .map(|(case, reference)| subject(case, reference, levels.question))
-        .collect();
-    let questions: usize = subjects.iter().map(|s| s.planned.questions.len()).sum();
+    let plan = |(case, reference): (Case, Side)| {
+        let pilot = case.render(PILOT, 1 << 32 | seed()).unwrap();
+        let planned = plan(&case, (&pilot, PILOT), &reference, MOST, levels.question);
+        (case, reference, planned)
+    };
+    let subjects: Vec<(Case, Side, Planned)> = cases.into_iter().map(plan).collect();
+    let questions = subjects
+        .iter()
+        .map(|(_, _, planned)| planned.questions.len());
+    let questions: usize = questions.sum();
     let mut wrong = Vec::new();
     let (mut open, mut blurred) = (0, Vec::new());
-    for (index, subject) in subjects.iter().enumerate() {
-        let outcome = outcome(subject, index, levels);
+    for (index, (case, reference, planned)) in subjects.iter().enumerate() {
+        let seed = |round: u32| seed() << 20 | (index as u64) << 4 | u64::from(round);
+        let render = |spp, round| case.render(spp, seed(round));
+        let outcome = decide(case, planned, reference, levels, render);
+        let outcome = outcome.unwrap_or_else(|e| panic!("{e}"));
         println!(
             "{}: {:?} paths a pixel of {}x{}",
-            subject.case.name, outcome.samples, subject.reference.width, subject.reference.height
+            case.name, outcome.samples, reference.width, reference.height
         );
-        print!("{}", outcome.text(&subject.case));
+        print!("{}", outcome.text(case));
         open += outcome.open();
-        blurred.extend(blurred_means(&subject.case.name, &outcome));
+        blurred.extend(blurred_means(&case.name, &outcome));
         if outcome.alarms() {
-            wrong.push(subject.case.name.clone());
+            wrong.push(case.name.clone());
         }
     }
     println!("{questions} questions, {open} stay open");
@@ -133,26 +130,4 @@ fn case(name: &str, path: &Path) -> (Case, Side) {
     let case =
         Case::of_reference(name, &reference, root()).unwrap_or_else(|e| panic!("{name}: {e}"));
     (case, reference)
-}
-
-fn subject(case: Case, reference: Side, level: f64) -> Subject {
-    let pilot = case.render(PILOT, 1 << 32 | seed()).unwrap();
-    let planned = plan(&case, (&pilot, PILOT), &reference, MOST, level);
-    Subject {
-        case,
-        reference,
-        planned,
-    }
-}
-
-fn outcome(subject: &Subject, index: usize, levels: Levels) -> Outcome {
-    let seed = |round: u32| seed() << 20 | (index as u64) << 4 | u64::from(round);
-    decide(
-        &subject.case,
-        &subject.planned,
-        &subject.reference,
-        levels,
-        |spp, round| subject.case.render(spp, seed(round)),
-    )
-    .unwrap_or_else(|e| panic!("{e}"))
 }

@@ -16,14 +16,10 @@ camera = { from = [0, 2, 4], to = [0, 0, 0], fov = 50 }
 image = { size = [8, 8], spp = 8, max_depth = 3 }
 materials.floor = { diffuse = 0.7 }
 materials.lamp = { emit = 20 }
-[[object]]
-shape = { rectangle = { size = [3, 3] } }
-material = "floor"
-transform = [{ rotate_x = -90 }]
-[[object]]
-shape = { sphere = { radius = 0.15 } }
-material = "lamp"
-transform = [{ translate = [0.4, 0.6, 0] }]
+object = [
+    { shape = { rectangle = { size = [3, 3] } }, material = "floor", transform = [{ rotate_x = -90 }] },
+    { shape = { sphere = { radius = 0.15 } }, material = "lamp", transform = [{ translate = [0.4, 0.6, 0] }] },
+]
 "#;
 
 /// The scene with settings of its image.
@@ -47,6 +43,10 @@ fn render(ready: &mut Ready, seed: u64, samples: u32) -> Rendered {
     ready.render_for(seed, samples, None, &mut Unwatched)
 }
 
+fn goal(target: Target, error: f64) -> Goal {
+    Goal { target, error }
+}
+
 const WANTED: f64 = 0.05;
 const RENDERS: u64 = 1000;
 /// Of each of the two tests of means below: one false alarm in ten thousand.
@@ -62,10 +62,7 @@ fn truth(ready: &mut Ready) -> Estimate {
 fn a_goal_is_reached_without_bending_the_picture() {
     let mut ready = ready(&[("sampler", "independent")]);
     let truth = truth(&mut ready);
-    let goal = Goal {
-        target: Target::Image,
-        error: WANTED,
-    };
+    let goal = goal(Target::Image, WANTED);
     let (mut means, mut samples) = (Vec::new(), 0);
     for run in 0..RENDERS {
         let chosen = choose(goal, 64, 1 << 20, |samples, number| {
@@ -129,10 +126,7 @@ fn true_worst_block(ready: &mut Ready, samples: u32) -> f64 {
 
 #[test]
 fn the_worst_block_reaches_its_goal_too() {
-    let goal = Goal {
-        target: Target::Block,
-        error: WANTED,
-    };
+    let goal = goal(Target::Block, WANTED);
     for sampler in ["independent", "stratified", "sobol"] {
         let ready = |samples: u32| {
             let size = ("size", "[24, 16]");
@@ -157,10 +151,7 @@ fn the_worst_block_reaches_its_goal_too() {
 #[test]
 fn a_goal_that_needs_more_than_can_be_had_says_so() {
     let mut ready = ready(&[]);
-    let goal = Goal {
-        target: Target::Image,
-        error: 1e-6,
-    };
+    let goal = goal(Target::Image, 1e-6);
     let chosen = choose(goal, 64, 64, |samples, number| {
         Some(render(&mut ready, u64::from(number), samples))
     });

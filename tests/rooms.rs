@@ -3,6 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use crate::support::files;
+
 /// What each room may use.
 type Table = BTreeMap<String, BTreeSet<String>>;
 
@@ -69,16 +71,15 @@ fn circles(table: &Table) -> Vec<&str> {
     rooms.filter(|room| reaches_itself(room)).collect()
 }
 
-/// Adds the Rust files in a folder and below it.
-pub fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            rust_files(&path, found);
-        } else if path.extension().is_some_and(|e| e == "rs") {
-            found.push(path);
-        }
-    }
+/// The Rust files in a folder and below it.
+pub fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    let below = |name: String| match folder.join(name) {
+        path if path.is_dir() => rust_files(&path),
+        path => vec![path],
+    };
+    let mut found: Vec<PathBuf> = files(folder).into_iter().flat_map(below).collect();
+    found.retain(|path| path.extension().is_some_and(|e| e == "rs"));
+    found
 }
 
 /// What every room of the table uses; rooms of the lane crate stand in a folder of their own.
@@ -88,15 +89,13 @@ fn uses(table: &Table) -> Table {
         let mut files = Vec::new();
         for place in [source.join(room), source.join("lanes").join(room)] {
             if place.is_dir() {
-                rust_files(&place, &mut files);
+                files.extend(rust_files(&place));
             }
             files.extend(Some(place.with_extension("rs")).filter(|file| file.is_file()));
         }
         assert!(!files.is_empty(), "the room {room} has no folder");
-        let code = files
-            .iter()
-            .map(|file| std::fs::read_to_string(file).unwrap());
-        (room.clone(), code.flat_map(|code| used(&code)).collect())
+        let of_file = |file| used(&std::fs::read_to_string(file).unwrap());
+        (room.clone(), files.iter().flat_map(of_file).collect())
     };
     table.keys().map(of_room).collect()
 }
@@ -104,14 +103,12 @@ fn uses(table: &Table) -> Table {
 /// Folders of rooms that the table does not know.
 fn unknown(table: &Table) -> Vec<String> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let folders = |folder: &Path| {
-        let entries = std::fs::read_dir(folder).unwrap();
-        let paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
-        paths.into_iter().filter(|path| path.is_dir())
+    let folders = |folder: PathBuf| {
+        let names = files(&folder).into_iter();
+        names.filter(move |name| folder.join(name).is_dir())
     };
-    folders(&source)
-        .chain(folders(&source.join("lanes")))
-        .filter_map(|path| Some(path.file_name()?.to_str()?.to_owned()))
+    folders(source.join("lanes"))
+        .chain(folders(source))
         // The command line is the program's, above all rooms; `doors` is for tests.
         .filter(|name| !["cli", "lanes", "doors"].contains(&name.as_str()))
         .filter(|name| !table.contains_key(name))
@@ -136,10 +133,7 @@ fn rooms_use_what_the_table_allows() {
 #[test]
 fn a_wrong_arrow_and_a_circle_are_seen() {
     let table = table("//! math →\n//! shape → math\n//! scene → shape, math\n");
-    let uses = |code: &str| {
-        let shape = ("shape".to_owned(), used(code));
-        [shape].into_iter().collect::<Table>()
-    };
+    let uses = |code: &str| Table::from([("shape".to_owned(), used(code))]);
     for code in [
         "use crate::scene::Scene;",
         "use crate::{math::ray, scene::Scene};",
@@ -160,10 +154,9 @@ fn a_wrong_arrow_and_a_circle_are_seen() {
 #[test]
 fn tests_and_tools_compile_no_lanes() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut files = Vec::new();
-    for folder in ["tests", "tools"] {
-        rust_files(&root.join(folder), &mut files);
-    }
+    let mut files = ["tests", "tools"]
+        .map(|folder| rust_files(&root.join(folder)))
+        .concat();
     files.retain(|file| !file.starts_with(root.join("tests/doors")));
     assert!(files.len() > 50);
     let generic = ["Lanes", "DoubleLanes"].map(|bound| format!(": {bound}"));

@@ -32,7 +32,7 @@ fn level() -> f64 {
     sidak(FAMILY, TESTS)
 }
 
-const KINDS: [SamplerKind; 3] = [
+pub const KINDS: [SamplerKind; 3] = [
     SamplerKind::Independent,
     SamplerKind::Stratified,
     SamplerKind::Sobol,
@@ -54,9 +54,10 @@ fn drawn(
     precision: Precision,
     sequence: &Sequence,
     numbers: Numbers,
-    samples: &[[u32; 4]],
+    samples: impl Iterator<Item = [u32; 4]>,
 ) -> Vec<[f64; 5]> {
-    sample_numbers(Instructions::best(), precision, sequence, numbers, samples)
+    let samples: Vec<[u32; 4]> = samples.collect();
+    sample_numbers(Instructions::best(), precision, sequence, numbers, &samples)
 }
 
 /// All samples 0 … n − 1 of `pixels` pixels, pixel by pixel.
@@ -67,10 +68,8 @@ pub fn pixels_of(
     pixels: u32,
     n: u32,
 ) -> Vec<[f64; 5]> {
-    let requests: Vec<[u32; 4]> = (0..pixels)
-        .flat_map(|p| (0..n).map(move |i| [p % 64, p / 64, 0, i]))
-        .collect();
-    drawn(precision, &sequence, what, &requests)
+    let requests = (0..pixels).flat_map(|p| (0..n).map(move |i| [p % 64, p / 64, 0, i]));
+    drawn(precision, &sequence, what, requests)
 }
 
 #[test]
@@ -86,10 +85,8 @@ fn every_number_is_uniform_at_every_index() {
             for what in NUMBERS {
                 // One number a pixel: those of a pixel are not independent of one another.
                 for index in [0, 1, 6, 200] {
-                    let requests: Vec<[u32; 4]> = (0..12_800)
-                        .map(|p| [p % 160, p / 160, p % 3, index])
-                        .collect();
-                    let drawn = drawn(precision, &sequence, what, &requests);
+                    let requests = (0..12_800).map(|p| [p % 160, p / 160, p % 3, index]);
+                    let drawn = drawn(precision, &sequence, what, requests);
                     for column in 0..what.width() {
                         let mut counts = [0; 64];
                         for x in drawn.iter().map(|numbers| numbers[column]) {
@@ -111,11 +108,10 @@ fn a_sample_does_not_depend_on_its_company() {
         for kind in KINDS {
             for what in NUMBERS {
                 let sequence = sequence(kind, 7, 64);
-                let requests: Vec<[u32; 4]> =
-                    (0..999).map(|i| [i % 7, i / 100, i % 2, i % 64]).collect();
-                let together = drawn(precision, &sequence, what, &requests);
-                let reversed: Vec<[u32; 4]> = requests.iter().copied().rev().collect();
-                let backwards = drawn(precision, &sequence, what, &reversed);
+                let requests = (0..999).map(|i| [i % 7, i / 100, i % 2, i % 64]);
+                let together = drawn(precision, &sequence, what, requests.clone());
+                let backwards = drawn(precision, &sequence, what, requests.clone().rev());
+                let requests: Vec<[u32; 4]> = requests.collect();
                 assert!(together.iter().eq(backwards.iter().rev()));
                 let ask = |set| sample_numbers(set, precision, &sequence, what, &requests);
                 for (name, other) in on_each(ask) {
@@ -123,7 +119,7 @@ fn a_sample_does_not_depend_on_its_company() {
                 }
                 // Another seed, another pixel: other numbers.
                 let sequence = self::sequence(kind, 8, 64);
-                let other = drawn(precision, &sequence, what, &requests);
+                let other = drawn(precision, &sequence, what, requests.into_iter());
                 assert!(together.iter().zip(&other).filter(|(a, b)| a == b).count() < 20);
             }
         }
@@ -432,9 +428,8 @@ fn many_strata_stay_in_the_square() {
         let sequence = sequence(SamplerKind::Stratified, 2, points);
         for what in [Numbers::Pair(Slot::Light, 0), Numbers::Camera] {
             let requests = (0..20_000).map(|i| [1, 2, 0, i * (points / 20_000)]);
-            let requests: Vec<[u32; 4]> = requests.collect();
-            let [single, double] =
-                PRECISIONS.map(|precision| drawn(precision, &sequence, what, &requests).concat());
+            let drawn = |precision| drawn(precision, &sequence, what, requests.clone()).concat();
+            let [single, double] = PRECISIONS.map(drawn);
             for (a, b) in single.iter().zip(&double) {
                 let within = (0.0..1.0).contains(a) && (a - b).abs() < 1e-6;
                 assert!(within, "{points}: {a} {b}");
@@ -485,8 +480,8 @@ fn standard_errors_are_honest() {
         let (replicate, index) = replicates.place(k % spp);
         [k / spp, 0, replicate, index]
     };
-    let requests: Vec<[u32; 4]> = (0..pixels * spp).map(request).collect();
-    let drawn = drawn(Precision::Single, &sequence, Numbers::Camera, &requests);
+    let requests = (0..pixels * spp).map(request);
+    let drawn = drawn(Precision::Single, &sequence, Numbers::Camera, requests);
     let mut film = Pixels::new(pixels as usize, replicates, spp);
     for (k, numbers) in drawn.iter().enumerate() {
         let (pixel, i) = (k as u32 / spp, k as u32 % spp);
@@ -557,16 +552,11 @@ fn stopping_on_the_pilot_is_biased_and_fixed_counts_are_not() {
 
 #[test]
 fn weights_of_both_strategies_sum_to_one() {
-    let (mut ps, mut qs) = (Vec::new(), Vec::new());
-    for i in -25..=25 {
-        for j in -25..=25 {
-            ps.push(1.3 * libm::exp10(f64::from(i)));
-            qs.push(0.7 * libm::exp10(f64::from(j)));
-        }
-    }
-    // No density of the other strategy: all the weight.
-    ps.push(0.3);
-    qs.push(0.0);
+    let power = |(i, j): (i32, i32)| [(1.3, i), (0.7, j)].map(|(x, e)| x * libm::exp10(e.into()));
+    let pairs = (-25..=25).flat_map(|i| (-25..=25).map(move |j| (i, j)));
+    // At last, no density of the other strategy: all the weight.
+    let pairs = pairs.map(power).chain([[0.3, 0.0]]);
+    let (ps, qs): (Vec<f64>, Vec<f64>) = pairs.map(|[p, q]| (p, q)).unzip();
     for precision in PRECISIONS {
         let [a, b] = everywhere(|set| power_weights(set, precision, [&ps, &qs]));
         for (i, (a, b)) in a.iter().zip(&b).enumerate() {
@@ -581,19 +571,20 @@ fn weights_of_both_strategies_sum_to_one() {
     }
 }
 
-/// Counts over 16 × 16 bins of two numbers in [0, 1], against equal shares.
-fn evenness(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
-    let mut counts = vec![0; 256];
+/// Counts over N × N bins of two numbers in [0, 1], against equal shares.
+pub fn evenness<const N: usize>(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let mut counts = vec![0; N * N];
     let mut total = 0.0;
     for (a, b) in pairs {
-        let cell = |x: f64| ((x * 16.0) as usize).min(15);
-        counts[cell(a) * 16 + cell(b)] += 1;
+        let cell = |x: f64| ((x * N as f64) as usize).min(N - 1);
+        counts[cell(a) * N + cell(b)] += 1;
         total += 1.0;
     }
-    chi_square(&counts, &vec![total / 256.0; 256])
+    chi_square(&counts, &vec![total / (N * N) as f64; N * N])
 }
 
-fn turn(x: f64, y: f64) -> f64 {
+/// The angle of (x, y) from the negative x axis, in turns.
+pub fn turn(x: f64, y: f64) -> f64 {
     libm::atan2(y, x) / TAU + 0.5
 }
 
@@ -616,9 +607,9 @@ fn warps(precision: Precision, seed: u64, bend: impl Fn(f64) -> f64) -> [f64; 3]
     [
         // r² is uniform on the disk, as is cos² for the cosine density (∫ cos/π dω = cos²), and z
         // on the sphere.
-        evenness((0..count).map(|i| (x[i] * x[i] + y[i] * y[i], turn(x[i], y[i])))),
-        evenness((0..count).map(|i| (hz[i] * hz[i], turn(hx[i], hy[i])))),
-        evenness((0..count).map(|i| ((sz[i] + 1.0) / 2.0, turn(sx[i], sy[i])))),
+        evenness::<16>((0..count).map(|i| (x[i] * x[i] + y[i] * y[i], turn(x[i], y[i])))),
+        evenness::<16>((0..count).map(|i| (hz[i] * hz[i], turn(hx[i], hy[i])))),
+        evenness::<16>((0..count).map(|i| ((sz[i] + 1.0) / 2.0, turn(sx[i], sy[i])))),
     ]
 }
 
@@ -643,13 +634,8 @@ fn warps_follow_their_densities() {
 #[test]
 fn warps_are_finite_at_the_corners() {
     let edge = [0.0, 0.25, 0.5, 0.75, 1.0 - f64::EPSILON, 1e-30];
-    let (mut u, mut v) = (Vec::new(), Vec::new());
-    for a in edge {
-        for b in edge {
-            u.push(a);
-            v.push(b);
-        }
-    }
+    let corners = edge.into_iter().flat_map(|a| edge.map(|b| (a, b)));
+    let (u, v): (Vec<f64>, Vec<f64>) = corners.unzip();
     for precision in PRECISIONS {
         for column in everywhere(|set| samplers::warps(set, precision, [&u, &v])) {
             assert!(column.iter().all(|x| x.abs() <= 1.0 + 1e-6));

@@ -8,13 +8,18 @@ use etalon::inside::math::exact::Exact;
 use etalon::inside::math::number::{Bounded, Number};
 use etalon::inside::shape::ladder::{Question, ScaledRay};
 use etalon::inside::shape::list::FirstCrossing;
-use etalon::inside::shape::{Placed, Query, Ray, ShapeKind, SingularMatrix, Start, Tally};
+use etalon::inside::shape::{Hit, Placed, Query, Ray, ShapeKind, SingularMatrix, Start, Tally};
 use etalon_doors::shapes::{Through, crossings};
 use glam::{DMat3, DQuat, DVec3};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-pub const KINDS: &[ShapeKind] = ShapeKind::ALL;
+use crate::support::ray;
+
+/// Every kind in turn.
+pub fn kind_of(round: usize) -> ShapeKind {
+    ShapeKind::ALL[round % ShapeKind::ALL.len()]
+}
 
 fn signed(rng: &mut impl Rng) -> f64 {
     rng.random_range(-1.0..1.0)
@@ -62,15 +67,11 @@ pub fn matrix(rng: &mut impl Rng) -> Affine {
 
 /// A canonical point where answers change: a corner, an edge, a rim, a silhouette, a face.
 pub fn critical_point(rng: &mut impl Rng) -> DVec3 {
-    let mut p = cubed(rng);
+    let p = cubed(rng);
     match rng.random_range(0..3) {
         0 => {
-            for i in 0..3 {
-                if rng.random_bool(0.6) {
-                    p[i] = p[i].signum();
-                }
-            }
-            p
+            let mut rounded = |x: f64| if rng.random_bool(0.6) { x.signum() } else { x };
+            p.to_array().map(&mut rounded).into()
         }
         1 => p.normalize(),
         _ => {
@@ -84,6 +85,10 @@ pub fn critical_point(rng: &mut impl Rng) -> DVec3 {
 pub fn placed(kind: ShapeKind, scale: f64, shift: DVec3) -> Placed {
     let matrix = Affine::translate(shift).after(&Affine::scale(DVec3::splat(scale)));
     Placed::new(kind, &matrix).unwrap()
+}
+
+pub fn first_hit(placed: &Placed, ray: &Ray, t_min: f64, start: Start) -> Option<Hit> {
+    placed.first_hit(ray, t_min, start, &mut Tally::default())
 }
 
 fn nasty_ray(rng: &mut impl Rng, to_world: &Affine) -> (Ray, f64) {
@@ -151,7 +156,7 @@ fn lower_rungs_never_contradict_the_exact_one() {
     let mut rng = Pcg64Mcg::seed_from_u64(0x001a_dde5);
     let mut decided = Decided::default();
     for round in 0..12_000 {
-        let kind = KINDS[round % KINDS.len()];
+        let kind = kind_of(round);
         let to_world = matrix(&mut rng);
         let placed = Placed::new(kind, &to_world).unwrap();
         let (ray, t_min) = nasty_ray(&mut rng, &to_world);
@@ -171,8 +176,7 @@ fn lower_rungs_never_contradict_the_exact_one() {
             };
             decided.ask(&placed, &scaled, &first, &what);
         }
-        let mut tally = Tally::default();
-        if let Some(hit) = placed.first_hit(&ray, t_min, Start::Free, &mut tally) {
+        if let Some(hit) = first_hit(&placed, &ray, t_min, Start::Free) {
             decided.hits += 1;
             let proper = hit.local.is_finite() && hit.t >= t_min && hit.point.is_finite();
             let unit = (hit.normal.length() - 1.0).abs() < 4.0 * f64::EPSILON;
@@ -248,39 +252,25 @@ fn exact_numbers_round_to_nearest() {
 fn a_start_on_the_surface_counts_the_far_crossing_only() {
     let mut rng = Pcg64Mcg::seed_from_u64(5);
     for round in 0..600 {
-        let kind = KINDS[round % 3];
+        let kind = ShapeKind::ALL[round % 3];
         let to_world = matrix(&mut rng);
         let body = Placed::new(kind, &to_world).unwrap();
         let aim = to_world.point(0.5 * cubed(&mut rng));
         let origin = to_world.point(5.0 * cubed(&mut rng).normalize());
-        let mut tally = Tally::default();
-        let ray = Ray {
-            origin,
-            direction: aim - origin,
-        };
-        let Some(entry) = body.first_hit(&ray, 0.0, Start::Free, &mut tally) else {
+        let toward = ray(origin, aim - origin);
+        let Some(entry) = first_hit(&body, &toward, 0.0, Start::Free) else {
             continue;
         };
         // From the rounded point of entry on: the exit it would have had, up to that rounding.
-        let inward = Ray {
-            origin: entry.point,
-            ..ray
-        };
-        let exit = body.first_hit(&inward, 0.0, Start::OnSurfaceInward, &mut tally);
-        let [near, far] = crossings(&body, &ray).unwrap();
+        let inward = ray(entry.point, toward.direction);
+        let exit = first_hit(&body, &inward, 0.0, Start::OnSurfaceInward);
+        let [near, far] = crossings(&body, &toward).unwrap();
         assert_eq!(near.t, entry.t);
-        if let Some(exit) = exit {
-            assert!(!exit.front && far.t >= near.t);
-        }
-        let excluded = body.first_hit(&inward, 0.0, Start::Excluded, &mut tally);
-        assert!(excluded.is_none());
+        assert!(exit.is_none_or(|exit| !exit.front && far.t >= near.t));
+        assert!(first_hit(&body, &inward, 0.0, Start::Excluded).is_none());
     }
     let disk = placed(ShapeKind::Disk, 1.0, DVec3::ZERO);
-    let ray = Ray {
-        origin: DVec3::Z,
-        direction: -DVec3::Z,
-    };
-    let hit = |start| disk.first_hit(&ray, 0.0, start, &mut Tally::default());
+    let hit = |start| first_hit(&disk, &ray(DVec3::Z, -DVec3::Z), 0.0, start);
     assert!(hit(Start::OnSurfaceInward).is_none());
     assert!(hit(Start::Free).is_some_and(|hit| hit.front));
 }
@@ -289,46 +279,29 @@ fn a_start_on_the_surface_counts_the_far_crossing_only() {
 fn odd_input_is_refused_quietly() {
     // One unit in the last place off a singular matrix is not singular.
     let barely = 4.0 + 4.0 * f64::EPSILON;
-    for (entry, refused) in [
-        (4.0, Some(SingularMatrix)),
-        (barely, None),
-        (f64::NAN, Some(SingularMatrix)),
-    ] {
+    let singular = Some(SingularMatrix);
+    for (entry, refused) in [(4.0, singular), (barely, None), (f64::NAN, singular)] {
         let [a, c] = [[1.0, 2.0, 3.0, 0.0], [0.1, 0.2, 0.7, 0.0]];
         let rows = [a, [2.0, entry, 6.0, 0.0], c];
-        assert_eq!(
-            Placed::new(ShapeKind::Cube, &Affine { rows }).err(),
-            refused
-        );
+        let placed = Placed::new(ShapeKind::Cube, &Affine { rows });
+        assert_eq!(placed.err(), refused);
     }
-    let extreme = [
-        0.0,
-        5e-324,
-        f64::MIN_POSITIVE,
-        1e-160,
-        1.0,
-        1e160,
-        f64::MAX,
-        f64::NAN,
-        f64::INFINITY,
-    ];
-    for &kind in KINDS {
-        let scales = [1e-300, 1e-6, 1.0, 1e300];
-        for scale in scales {
+    let [least, most] = [f64::MIN_POSITIVE, f64::MAX];
+    let [nan, infinite] = [f64::NAN, f64::INFINITY];
+    let extreme = [0.0, 5e-324, least, 1e-160, 1.0, 1e160, most, nan, infinite];
+    let pairs = extreme
+        .iter()
+        .flat_map(|a| extreme.iter().map(move |b| (*a, *b)));
+    for &kind in ShapeKind::ALL {
+        for scale in [1e-300, 1e-6, 1.0, 1e300] {
             let body = placed(kind, scale, DVec3::ONE);
-            for a in extreme {
-                for b in extreme {
-                    let ray = Ray {
-                        origin: DVec3::new(a, -b, 0.5),
-                        direction: DVec3::new(-a, b, 1e-3 * b),
-                    };
-                    for t_min in [0.0, a, -b] {
-                        let hit = body.first_hit(&ray, t_min, Start::Free, &mut Tally::default());
-                        if let Some(hit) = hit {
-                            let finite = hit.point.is_finite() && hit.normal.is_finite();
-                            let after = hit.t.is_finite() && hit.t >= t_min;
-                            assert!(finite && after, "{hit:?}");
-                        }
+            for (a, b) in pairs.clone() {
+                let ray = ray(DVec3::new(a, -b, 0.5), DVec3::new(-a, b, 1e-3 * b));
+                for t_min in [0.0, a, -b] {
+                    if let Some(hit) = first_hit(&body, &ray, t_min, Start::Free) {
+                        let finite = hit.point.is_finite() && hit.normal.is_finite();
+                        let after = hit.t.is_finite() && hit.t >= t_min;
+                        assert!(finite && after, "{hit:?}");
                     }
                 }
             }

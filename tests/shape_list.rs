@@ -1,13 +1,13 @@
 //! Several objects: ties of t, exact order, limits.
 
 use etalon::inside::shape::list::{nearest, occluded};
-use etalon::inside::shape::{Placed, Query, Ray, ShapeKind, Start, Tally, Tier};
+use etalon::inside::shape::{Placed, Query, ShapeKind, Start, Tally, Tier};
 use glam::DVec3;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
-use crate::shape_ladder::{KINDS, cubed, decade, placed};
-use crate::support::from_zero;
+use crate::shape_ladder::{cubed, decade, first_hit, placed};
+use crate::support::{from_zero, ray};
 
 fn free(_: usize) -> Start {
     Start::Free
@@ -20,10 +20,8 @@ fn all(objects: &[Placed]) -> impl Iterator<Item = (usize, &Placed)> {
 #[test]
 fn equal_t_goes_by_priority_then_index() {
     // A cube on a cube of twice the size, seen through the common plane z = 1 from inside.
-    let cubes = [
-        placed(ShapeKind::Cube, 0.5, DVec3::new(0.0, 0.0, 1.5)),
-        placed(ShapeKind::Cube, 1.0, DVec3::ZERO),
-    ];
+    let cube = |scale, z| placed(ShapeKind::Cube, scale, DVec3::Z * z);
+    let cubes = [cube(0.5, 1.5), cube(1.0, 0.0)];
     let up = from_zero(DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.01, 0.03, 0.1));
     for (first, priority) in [(0, [0, 0]), (0, [0, 1]), (1, [1, 0])] {
         let mut tally = Tally::default();
@@ -39,10 +37,8 @@ fn equal_t_goes_by_priority_then_index() {
 #[test]
 fn equal_irrational_t_is_recognised_and_the_smallest_difference_too() {
     // Sphere and cylinder share the circle z = 0; the crossing is irrational.
-    let round = [
-        placed(ShapeKind::Sphere, 1.0, DVec3::ZERO),
-        placed(ShapeKind::Cylinder, 1.0, DVec3::ZERO),
-    ];
+    let unit = |kind, shift| placed(kind, 1.0, shift);
+    let round = [ShapeKind::Sphere, ShapeKind::Cylinder].map(|kind| unit(kind, DVec3::ZERO));
     let flat = from_zero(DVec3::new(-3.0, 0.1, 0.0), DVec3::new(0.7, 0.1, 0.0));
     for first in [0, 1] {
         let winner = |i: usize| u8::from(i != first);
@@ -50,10 +46,8 @@ fn equal_irrational_t_is_recognised_and_the_smallest_difference_too() {
         assert_eq!(index, first);
     }
     // Spheres 2⁻²⁰⁰ apart: whatever the priority, the nearer one is nearer.
-    let spheres = [
-        placed(ShapeKind::Sphere, 1.0, DVec3::ZERO),
-        placed(ShapeKind::Sphere, 1.0, DVec3::X * 2f64.powi(-200)),
-    ];
+    let shifts = [DVec3::ZERO, DVec3::X * 2f64.powi(-200)];
+    let spheres = shifts.map(|shift| unit(ShapeKind::Sphere, shift));
     for (side, first) in [(-3.0, 0), (3.0, 1)] {
         let ray = from_zero(DVec3::new(side, 0.1, 0.2), DVec3::new(-side, 0.05, 0.1));
         let loser = |i: usize| u8::from(i == first);
@@ -68,33 +62,26 @@ fn nearest_agrees_with_the_hits_one_by_one() {
     let mut rng = Pcg64Mcg::seed_from_u64(77);
     let mut found = 0;
     for _ in 0..500 {
-        let objects: Vec<Placed> = (0..5)
-            .map(|i| placed(KINDS[i], decade(&mut rng, -1.0, 0.5), 2.0 * cubed(&mut rng)))
-            .collect();
+        let mut object = |i: usize| {
+            let scale = decade(&mut rng, -1.0, 0.5);
+            placed(ShapeKind::ALL[i], scale, 2.0 * cubed(&mut rng))
+        };
+        let objects = [0, 1, 2, 3, 4].map(&mut object);
         let from = 6.0 * cubed(&mut rng);
         let query = from_zero(from, 2.0 * cubed(&mut rng) - from);
         let mut tally = Tally::default();
-        let single = objects
-            .iter()
-            .filter_map(|o| o.first_hit(&query.ray, 0.0, Start::Free, &mut tally))
-            .map(|hit| hit.t)
-            .min_by(f64::total_cmp);
+        let hit = |o: &Placed| Some(first_hit(o, &query.ray, 0.0, Start::Free)?.t);
+        let single = objects.iter().filter_map(hit).min_by(f64::total_cmp);
         let several = nearest(all(&objects), &query, free, |_| 0, &mut tally).map(|(_, hit)| hit);
         assert_eq!(single, several.map(|hit| hit.t));
         let Some(t) = single else { continue };
         found += 1;
-        let [before, past] = [0.999, 1.001].map(|factor| Query {
-            t_max: t * factor,
-            ..query
-        });
-        assert!(!occluded(all(&objects), &before, free, &mut tally));
-        assert!(occluded(all(&objects), &past, free, &mut tally));
-        assert!(!occluded(
-            all(&objects),
-            &past,
-            |_| Start::Excluded,
-            &mut tally
-        ));
+        let until = |t_max| Query { t_max, ..query };
+        let [before, past] = [until(t * 0.999), until(t * 1.001)];
+        let mut blocked = |query, start| occluded(all(&objects), query, |_| start, &mut tally);
+        assert!(!blocked(&before, Start::Free));
+        assert!(blocked(&past, Start::Free));
+        assert!(!blocked(&past, Start::Excluded));
         assert!(nearest(all(&objects), &before, free, |_| 0, &mut tally).is_none());
     }
     assert!(found > 100);
@@ -103,18 +90,7 @@ fn nearest_agrees_with_the_hits_one_by_one() {
 #[test]
 fn limits_are_strict_except_at_zero() {
     let cube = placed(ShapeKind::Cube, 1.0, DVec3::ZERO);
-    let ray = Ray {
-        origin: DVec3::new(-2.0, 0.25, 0.5),
-        direction: DVec3::X,
-    };
-    let t = |origin: f64, t_min: f64| {
-        let ray = Ray {
-            origin: DVec3::new(origin, 0.25, 0.5),
-            ..ray
-        };
-        let hit = cube.first_hit(&ray, t_min, Start::Free, &mut Tally::default());
-        hit.map(|hit| hit.t)
-    };
+    let along_x = |x: f64| ray(DVec3::new(x, 0.25, 0.5), DVec3::X);
     for (origin, t_min, wanted) in [
         (-2.0, 0.0, Some(1.0)),
         (-2.0, 1.0, Some(3.0)),
@@ -122,8 +98,10 @@ fn limits_are_strict_except_at_zero() {
         (-1.0, 0.0, Some(0.0)),
         (1.0, 0.0, Some(0.0)),
     ] {
-        assert_eq!(t(origin, t_min), wanted);
+        let hit = first_hit(&cube, &along_x(origin), t_min, Start::Free);
+        assert_eq!(hit.map(|hit| hit.t), wanted);
     }
+    let ray = along_x(-2.0);
     let query = |t_min, t_max| Query { ray, t_min, t_max };
     let cubes = [cube.clone()];
     let blocked = |q: Query| occluded(all(&cubes), &q, free, &mut Tally::default());

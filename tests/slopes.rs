@@ -187,11 +187,8 @@ fn slope_on(objects: &str, kind: SamplerKind) -> Slope {
 
 /// A wall close by under a point light beside the camera.
 const SMOOTH: &str = r#"
-[materials]
-wall = { diffuse = 0.8 }
-[[object]]
-shape = "plane"
-material = "wall"
+materials.wall = { diffuse = 0.8 }
+object = [{ shape = "plane", material = "wall" }]
 [[light]]
 point = [0.5, 0.5, 1]
 intensity = 1
@@ -199,11 +196,8 @@ intensity = 1
 
 /// A round lamp in the dark.
 const EDGE: &str = r#"
-[materials]
-lamp = { emit = 1 }
-[[object]]
-shape = { disk = { radius = 0.7 } }
-material = "lamp"
+materials.lamp = { emit = 1 }
+object = [{ shape = { disk = { radius = 0.7 } }, material = "lamp" }]
 "#;
 
 #[test]

@@ -38,10 +38,7 @@ pub fn chi_square(counts: &[u64], expected: &[f64]) -> f64 {
 
 /// P(χ² > x).
 pub fn chi_square_tail(freedom: f64, x: f64) -> f64 {
-    let Ok(distribution) = ChiSquared::new(freedom) else {
-        return f64::NAN;
-    };
-    distribution.sf(x)
+    ChiSquared::new(freedom).map_or(f64::NAN, |distribution| distribution.sf(x))
 }
 
 /// Two-sided p-value of a standard normal variable.

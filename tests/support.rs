@@ -120,6 +120,14 @@ pub fn words(command: &str) -> Vec<&str> {
     command.split(' ').collect()
 }
 
+/// The lines of a table, each of N cells with bars between them.
+pub fn cells<const N: usize>(table: &str) -> impl Iterator<Item = [&str; N]> {
+    table.trim().lines().map(|line| {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        cells.try_into().unwrap()
+    })
+}
+
 /// The names of the files in a folder.
 pub fn files(folder: &Path) -> BTreeSet<String> {
     let entries = std::fs::read_dir(folder).unwrap();
@@ -170,20 +178,33 @@ pub fn rendered(scene: &Scene, plan: &Plan) -> Rendered {
 /// The bits of every pixel's X, Y, Z and of their standard errors.
 pub fn pixel_bits(rendered: &Rendered) -> Vec<[[u64; 3]; 2]> {
     let bits = |xyz: [f64; 3]| xyz.map(f64::to_bits);
-    let pixels = rendered.xyz();
-    let pixels = pixels.iter();
+    let pixels = rendered.xyz().into_iter();
     pixels
-        .map(|e| [bits(e.mean), bits(e.standard_error)])
+        .map(|e| [e.mean, e.standard_error].map(bits))
         .collect()
 }
 
 /// A question about the first hit with t ≥ 0.
 pub fn from_zero(origin: DVec3, direction: DVec3) -> Query {
     Query {
-        ray: Ray { origin, direction },
+        ray: ray(origin, direction),
         t_min: 0.0,
         t_max: f64::INFINITY,
     }
+}
+
+/// An object of a scene file; shape and transforms as they are written.
+pub fn object(shape: &str, material: &str, transform: &str) -> String {
+    format!("[[object]]\nshape = {shape}\nmaterial = \"{material}\"\ntransform = [{transform}]\n")
+}
+
+pub fn ray(origin: DVec3, direction: DVec3) -> Ray {
+    Ray { origin, direction }
+}
+
+/// The cube [−half, half]³ by its corners.
+pub fn cube(half: f64) -> [DVec3; 2] {
+    [DVec3::splat(-half), DVec3::splat(half)]
 }
 
 /// A surface within the cube [−half, half]³.
@@ -191,7 +212,7 @@ pub fn implicit(field: impl Into<Arc<Expression>>, half: f64, finder: FinderChoi
     Implicit {
         name: None,
         field: field.into(),
-        inside: [DVec3::splat(-half), DVec3::splat(half)],
+        inside: cube(half),
         closed: false,
         finder,
         steps: 256,

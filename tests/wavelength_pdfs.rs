@@ -5,8 +5,6 @@
 //! (Wilkie et al. 2014, Hero Wavelength Spectral Sampling). Every wavelength of the set then has
 //! the same density, and the mean over the set of f(λⱼ)/p(λⱼ) estimates ∫ f dλ.
 
-use std::sync::LazyLock;
-
 use etalon::inside::spectrum::grid::visible_wavelength;
 use etalon::inside::spectrum::observer::{Y_INTEGRAL, spectrum_to_xyz, xyz_bar};
 use etalon::inside::spectrum::{NM_MAX, NM_MIN, Spectrum};
@@ -17,8 +15,6 @@ pub enum WavelengthPdf {
     /// p = A/cosh²(a (λ − 538 nm)), a = 0.0072 nm⁻¹ (Radziszewski, Boryczko and Alda 2009, with the
     /// parameters of pbrt-v4 and Mitsuba 3). A = a/(tanh(292 a) + tanh(178 a)).
     Visible,
-    /// p ∝ x̄ + ȳ + z̄ + 0.02, linear between whole nm.
-    Observer,
     /// p = 1/470 nm⁻¹.
     Uniform,
 }
@@ -27,16 +23,12 @@ pub enum WavelengthPdf {
 const STEEPNESS: f64 = 0.0072;
 /// Wavelength of the density's peak, nm.
 const PEAK: f64 = 538.0;
-/// Added to x̄ + ȳ + z̄, whose largest value is about 2, so that no wavelength is rare by more than
-/// a factor of 100.
-const OBSERVER_FLOOR: f64 = 0.02;
 
 impl WavelengthPdf {
     /// The wavelength in nm at `u` in 0…1: the inverse of the cumulative distribution.
     pub fn sample(self, u: f64) -> f64 {
         let nm = match self {
             Self::Visible => visible_wavelength(u),
-            Self::Observer => ObserverDensity::get().sample(u),
             Self::Uniform => NM_MIN + u * (NM_MAX - NM_MIN),
         };
         nm.clamp(NM_MIN, NM_MAX)
@@ -54,7 +46,6 @@ impl WavelengthPdf {
                 let cosh = libm::cosh(STEEPNESS * (nm - PEAK));
                 STEEPNESS / (span * cosh * cosh)
             }
-            Self::Observer => ObserverDensity::get().pdf(nm),
             Self::Uniform => 1.0 / (NM_MAX - NM_MIN),
         }
     }
@@ -69,54 +60,6 @@ impl WavelengthPdf {
 fn rotated(u: f64, j: usize, count: usize) -> f64 {
     let sum = u + j as f64 / count as f64;
     if sum >= 1.0 { sum - 1.0 } else { sum }
-}
-
-/// The piecewise linear density of [`WavelengthPdf::Observer`] and its integral at whole nm.
-struct ObserverDensity {
-    density: Vec<f64>,
-    cumulative: Vec<f64>,
-}
-
-impl ObserverDensity {
-    fn get() -> &'static Self {
-        static DENSITY: LazyLock<ObserverDensity> = LazyLock::new(ObserverDensity::new);
-        &DENSITY
-    }
-
-    fn new() -> Self {
-        let weights: Vec<f64> = (NM_MIN as u32..=NM_MAX as u32)
-            .map(|nm| xyz_bar(f64::from(nm)).iter().sum::<f64>() + OBSERVER_FLOOR)
-            .collect();
-        let mut integrals = vec![0.0];
-        let mut total = 0.0;
-        for pair in weights.windows(2) {
-            total += 0.5 * (pair[0] + pair[1]);
-            integrals.push(total);
-        }
-        Self {
-            density: weights.iter().map(|weight| weight / total).collect(),
-            cumulative: integrals.iter().map(|integral| integral / total).collect(),
-        }
-    }
-
-    fn pdf(&self, nm: f64) -> f64 {
-        let offset = nm - NM_MIN;
-        let index = (offset as usize).min(self.density.len() - 2);
-        let t = offset - index as f64;
-        self.density[index] * (1.0 - t) + self.density[index + 1] * t
-    }
-
-    /// Solves p t + (q − p) t²/2 = r in the interval that holds `u`, in the form without
-    /// cancellation.
-    fn sample(&self, u: f64) -> f64 {
-        let above = self.cumulative.partition_point(|&c| c <= u);
-        let index = above.clamp(1, self.density.len() - 1) - 1;
-        let (p, q) = (self.density[index], self.density[index + 1]);
-        let r = (u - self.cumulative[index]).max(0.0);
-        let root = (p * p + 2.0 * (q - p) * r).max(0.0).sqrt();
-        let t = (2.0 * r / (p + root)).min(1.0);
-        NM_MIN + index as f64 + t
-    }
 }
 
 /// Relative variance, per path, of the estimates of X, Y and Z of the equal-energy spectrum from

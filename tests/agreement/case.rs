@@ -17,7 +17,6 @@ const REPLICATES: u32 = 4;
 /// Fewest pixels of a region.
 const LEAST_PIXELS: usize = 16;
 
-/// A scene to be rendered and judged.
 #[derive(Debug)]
 pub struct Case {
     pub name: String,
@@ -31,44 +30,30 @@ pub struct Case {
 /// The pixels whose centres show a material.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Region {
-    /// The material's name.
     pub name: String,
-    /// Its pixels, row by row.
     pub pixels: Vec<usize>,
 }
 
-/// Why a case cannot be rendered.
 pub type CaseError = Box<dyn std::error::Error>;
 
 impl Case {
-    /// A case of a scene.
-    ///
-    /// # Errors
-    /// [`Singular`] where an object's matrix has no inverse.
     pub fn new(name: &str, mut scene: Scene, bands: Option<BinGrid>) -> Result<Self, Singular> {
         scene.image.replicates = Some(REPLICATES);
-        let hits = first_hits(
-            &scene,
-            Window::whole(scene.image.size),
-            Instructions::best(),
-        )?;
-        let shown: Vec<Option<usize>> = hits
-            .iter()
-            .map(|hit| hit.as_ref().map(|h| scene.objects[h.object].value.material))
-            .collect();
-        let regions = scene.materials.iter().enumerate().map(|(index, material)| {
-            let pixels = shown.iter().enumerate();
-            Region {
-                name: material.name.clone(),
-                pixels: pixels
-                    .filter(|(_, shown)| **shown == Some(index))
-                    .map(|(pixel, _)| pixel)
-                    .collect(),
-            }
+        let names = scene.materials.iter().map(|material| material.name.clone());
+        let regions = names.map(|name| Region {
+            name,
+            pixels: Vec::new(),
         });
-        let regions = regions
-            .filter(|region| region.pixels.len() >= LEAST_PIXELS)
-            .collect();
+        let mut regions: Vec<Region> = regions.collect();
+        let whole = Window::whole(scene.image.size);
+        let hits = first_hits(&scene, whole, Instructions::best())?;
+        for (pixel, hit) in hits.iter().enumerate() {
+            if let Some(hit) = hit {
+                let material = scene.objects[hit.object].value.material;
+                regions[material].pixels.push(pixel);
+            }
+        }
+        regions.retain(|region| region.pixels.len() >= LEAST_PIXELS);
         Ok(Self {
             name: name.to_owned(),
             scene,
@@ -78,9 +63,6 @@ impl Case {
     }
 
     /// The case that a reference is of; its scene file is looked for from `root`.
-    ///
-    /// # Errors
-    /// [`CaseError`] where the scene cannot be read or the bands are unusable.
     pub fn of_reference(name: &str, reference: &Side, root: &Path) -> Result<Self, CaseError> {
         let file = reference
             .text("sceneFile")
@@ -96,9 +78,6 @@ impl Case {
     }
 
     /// Plans and renders it.
-    ///
-    /// # Errors
-    /// [`CaseError`] where the scene cannot be planned or samples are not numbers.
     pub fn render(&self, spp: u32, seed: u64) -> Result<Side, CaseError> {
         let mut scene = self.scene.clone();
         (scene.image.spp, scene.image.seed) = (spp, seed);
@@ -107,9 +86,6 @@ impl Case {
     }
 
     /// Renders a plan made of its scene.
-    ///
-    /// # Errors
-    /// [`CaseError`] where samples are not numbers.
     pub fn rendered(&self, plan: &Plan, spp: u32) -> Result<Side, CaseError> {
         let request = Request {
             bins: self.bands.as_ref(),

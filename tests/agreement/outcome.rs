@@ -21,18 +21,15 @@ pub struct Levels {
 /// The answer to a question.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// What was asked.
     pub question: Question,
     /// Picture minus reference, over the reference's mean.
     pub difference: Estimate,
-    /// What that shows.
     pub verdict: Verdict,
     /// In which round, from 1.
     pub round: u32,
 }
 
-/// All answers about a case.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Outcome {
     pub answers: Vec<Answer>,
     /// Means, blocks and distribution in the first round.
@@ -54,9 +51,6 @@ impl Levels {
 
 /// Renders and judges: `render` takes camera paths per pixel and the number of the round, and must
 /// draw fresh samples each time.
-///
-/// # Errors
-/// Those of `render`.
 pub fn decide(
     case: &Case,
     planned: &Planned,
@@ -65,11 +59,7 @@ pub fn decide(
     mut render: impl FnMut(u32, u32) -> Result<Side, CaseError>,
 ) -> Result<Outcome, CaseError> {
     let mut open = planned.questions.clone();
-    let mut outcome = Outcome {
-        answers: Vec::new(),
-        judgement: None,
-        samples: Vec::new(),
-    };
+    let mut outcome = Outcome::default();
     let mut spp = planned.spp;
     for round in 1..=ROUNDS {
         let picture = render(spp, round)?;
@@ -114,7 +104,6 @@ impl Outcome {
         self.answers.iter().any(failed) || self.judgement.as_ref().is_some_and(|j| !j.consistent)
     }
 
-    /// Questions that stay open.
     pub fn open(&self) -> usize {
         let open = |answer: &&Answer| answer.verdict == Verdict::Inconclusive;
         self.answers.iter().filter(open).count()

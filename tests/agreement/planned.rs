@@ -29,7 +29,6 @@ pub struct Paths {
 /// A number of the picture: the mean of a channel over a region, or all pixels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Question {
-    /// The channel's name.
     pub channel: String,
     /// Index of the region, or the whole picture.
     pub region: Option<usize>,
@@ -37,7 +36,6 @@ pub struct Question {
     pub tolerance: f64,
 }
 
-/// What is going to be rendered, and what is asked about it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Planned {
     /// Camera paths per pixel of the first round.

@@ -10,11 +10,9 @@ use etalon::Estimate;
 /// What an estimated difference shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// It is within the tolerance.
     Pass,
     /// It is off zero, and not by so little that it does not matter.
     Fail,
-    /// Neither.
     Inconclusive,
 }
 

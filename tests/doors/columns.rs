@@ -80,6 +80,59 @@ macro_rules! columns {
 }
 pub(crate) use columns;
 
+/// Functions of an instruction set and arguments that calculate in lanes `l`: of a precision, or of
+/// tables of either precision, which come first.
+macro_rules! jobs {
+    ($(
+        $(#[$doc:meta])*
+        $name:ident<$a:lifetime>($l:ident: $L:ident, $($x:ident: $type:ty),+) -> $output:ty $body:block
+    )+) => {$(
+        $(#[$doc])*
+        pub fn $name<$a>(set: Instructions, precision: Precision, $($x: $type),+) -> $output {
+            struct Task<$a>($($type),+);
+            impl<$a, T: Scalar> Job<T> for Task<$a> {
+                type Output = $output;
+
+                #[inline(always)]
+                fn run<$L: Lanes<Scalar = T>>(self, $l: $L) -> $output {
+                    let Self($($x),+) = self;
+                    $body
+                }
+            }
+            $crate::columns::run_in(set, precision, Task($($x),+))
+        }
+    )+};
+    ($(
+        $(#[$doc:meta])*
+        $name:ident<$a:lifetime>(
+            $l:ident: $L:ident, $tables:ident of $Tables:ident, $($x:ident: $type:ty),+
+        ) -> $output:ty $body:block
+    )+) => {$(
+        $(#[$doc])*
+        pub fn $name<$a>(
+            set: Instructions,
+            $tables: $crate::Made<&$a $Tables<f32>, &$a $Tables<f64>>,
+            $($x: $type),+
+        ) -> $output {
+            struct Task<$a, T: Scalar>(&$a $Tables<T>, $($type),+);
+            impl<$a, T: Scalar> Job<T> for Task<$a, T> {
+                type Output = $output;
+
+                #[inline(always)]
+                fn run<$L: Lanes<Scalar = T>>(self, $l: $L) -> $output {
+                    let Self($tables, $($x),+) = self;
+                    $body
+                }
+            }
+            match $tables {
+                $crate::Made::Single(tables) => set.run(Task(tables, $($x),+)),
+                $crate::Made::Double(tables) => set.run(Task(tables, $($x),+)),
+            }
+        }
+    )+};
+}
+pub(crate) use jobs;
+
 /// A packet of rounded numbers, the first repeated in lanes that are left over.
 #[inline(always)]
 pub fn load<L: Lanes>(l: L, numbers: impl IntoIterator<Item = f64>) -> L::Real {

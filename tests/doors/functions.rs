@@ -1,5 +1,6 @@
-//! Elementary functions and vectors.
+//! Elementary functions, vectors and reflectance.
 
+use etalon_lanes::material::fresnel;
 use etalon_lanes::math::functions::{atan2_turns, ln, sin_cos_turns};
 use etalon_lanes::math::lanes::Real;
 use etalon_lanes::math::vec3::Vec3;
@@ -45,5 +46,12 @@ columns! {
             truth(a.same(b)),
             a.mul_add(b, a),
         ]
+    }
+
+    /// Cosine of the refracted ray and reflectance, of the cosine of incidence and the ratio of
+    /// indices.
+    dielectric(l, [cosine, eta]: 2) -> 2 {
+        let (transmitted, reflectance) = fresnel::dielectric(l, cosine, eta);
+        [transmitted, reflectance]
     }
 }

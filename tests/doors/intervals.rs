@@ -3,29 +3,20 @@
 use etalon_lanes::math::instructions::{DoubleLanes, Instructions, Job};
 use etalon_lanes::math::interval::{Domain, Interval};
 use etalon_lanes::math::lanes::{Mask, Real};
-use etalon_lanes::math::packet::each;
+use etalon_lanes::math::packet::array;
 
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Bounds {
-    pub low: Vec<f64>,
-    pub high: Vec<f64>,
-}
+use crate::columns::load;
 
-impl Bounds {
-    pub fn push(&mut self, [low, high]: [f64; 2]) {
-        self.low.push(low);
-        self.high.push(high);
-    }
+/// The ends of an interval, low and high.
+pub type Bounds = [f64; 2];
 
-    pub fn at(&self, i: usize) -> [f64; 2] {
-        [self.low[i], self.high[i]]
-    }
-
-    /// Whether all are the same bits.
-    pub fn same_bits(&self, other: &Self) -> bool {
-        let bits = |x: &[f64]| x.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-        bits(&self.low) == bits(&other.low) && bits(&self.high) == bits(&other.high)
-    }
+/// Whether all are the same bits.
+pub fn same_bits(a: &[Bounds], b: &[Bounds]) -> bool {
+    let bits = |x: &f64| x.to_bits();
+    a.iter()
+        .flatten()
+        .map(bits)
+        .eq(b.iter().flatten().map(bits))
 }
 
 /// An enum of these variants, and the list of all.
@@ -60,14 +51,11 @@ listed! {
 pub fn arithmetic(
     set: Instructions,
     operation: Operation,
-    [a, b]: [&Bounds; 2],
+    [a, b]: [&[Bounds]; 2],
     to_nearest: bool,
-) -> Bounds {
-    let job = Arithmetic {
-        operation,
-        to_nearest,
-    };
-    set.run(Each { job, a, b }).0
+) -> Vec<Bounds> {
+    let task = Task::Operation(operation, to_nearest);
+    set.run(Each { task, a, b }).0
 }
 
 /// A function of as many intervals as fill packets of any width, and where it may be undefined.
@@ -77,71 +65,57 @@ pub fn arithmetic(
 pub fn function(
     set: Instructions,
     function: Function,
-    [a, b]: [&Bounds; 2],
-) -> (Bounds, Vec<bool>) {
-    let job = function;
-    set.run(Each { job, a, b })
+    [a, b]: [&[Bounds]; 2],
+) -> (Vec<Bounds>, Vec<bool>) {
+    let task = Task::Function(function);
+    set.run(Each { task, a, b })
 }
 
-/// Something made of a packet of intervals.
-trait OfIntervals {
-    fn of<L: DoubleLanes>(
-        &self,
-        a: Interval<L>,
-        b: Interval<L>,
-        domain: &mut Domain<L>,
-    ) -> Interval<L>;
+enum Task {
+    Operation(Operation, bool),
+    Function(Function),
 }
 
-struct Each<'a, J> {
-    job: J,
-    a: &'a Bounds,
-    b: &'a Bounds,
+struct Each<'a> {
+    task: Task,
+    a: &'a [Bounds],
+    b: &'a [Bounds],
 }
 
-impl<J: OfIntervals> Job<f64> for Each<'_, J> {
-    type Output = (Bounds, Vec<bool>);
+impl Job<f64> for Each<'_> {
+    type Output = (Vec<Bounds>, Vec<bool>);
 
     #[inline(always)]
     fn run<L: DoubleLanes>(self, l: L) -> Self::Output {
-        let count = self.a.low.len();
+        let count = self.a.len();
         assert!(count.is_multiple_of(8), "{count} intervals");
-        let [low, high] = [(); 2].map(|()| vec![0.0; count]);
-        let mut bounds = Bounds { low, high };
-        let mut broken = vec![false; count];
-        for i in (0..count).step_by(L::COUNT) {
-            let a = Interval::new(l, l.load(&self.a.low[i..]), l.load(&self.a.high[i..]));
-            let b = Interval::new(l, l.load(&self.b.low[i..]), l.load(&self.b.high[i..]));
+        let (mut bounds, mut broken) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        for (a, b) in self.a.chunks(L::COUNT).zip(self.b.chunks(L::COUNT)) {
+            let ends = |x: &[Bounds], end: usize| load(l, x.iter().map(|x| x[end]));
+            let a = Interval::new(l, ends(a, 0), ends(a, 1));
+            let b = Interval::new(l, ends(b, 0), ends(b, 1));
             let mut domain = Domain::unbroken(l);
-            let c = self.job.of(a, b, &mut domain);
-            l.store(c.low, &mut bounds.low[i..]);
-            l.store(c.high, &mut bounds.high[i..]);
-            for j in each(domain.broken.bits()) {
-                broken[i + j] = true;
-            }
+            let c = match self.task {
+                Task::Operation(operation, true) => nearest(operation, a, b),
+                Task::Operation(operation, false) => outward(operation, a, b),
+                Task::Function(function) => of(function, a, b, &mut domain),
+            };
+            let (low, high, bits) = (array(l, c.low), array(l, c.high), domain.broken.bits());
+            bounds.extend((0..L::COUNT).map(|i| [low[i], high[i]]));
+            broken.extend((0..L::COUNT).map(|i| bits >> i & 1 == 1));
         }
         (bounds, broken)
     }
 }
 
-struct Arithmetic {
-    operation: Operation,
-    to_nearest: bool,
-}
-
-impl OfIntervals for Arithmetic {
-    #[inline(always)]
-    fn of<L: DoubleLanes>(&self, a: Interval<L>, b: Interval<L>, _: &mut Domain<L>) -> Interval<L> {
-        if self.to_nearest {
-            return nearest(self.operation, a, b);
-        }
-        match self.operation {
-            Operation::Sum => a + b,
-            Operation::Difference => a - b,
-            Operation::Product => a * b,
-            Operation::Quotient => a / b,
-            Operation::SquareRoot => a.square_root(),
-        }
+#[inline(always)]
+fn outward<L: DoubleLanes>(operation: Operation, a: Interval<L>, b: Interval<L>) -> Interval<L> {
+    match operation {
+        Operation::Sum => a + b,
+        Operation::Difference => a - b,
+        Operation::Product => a * b,
+        Operation::Quotient => a / b,
+        Operation::SquareRoot => a.square_root(),
     }
 }
 
@@ -172,32 +146,30 @@ fn nearest<L: DoubleLanes>(operation: Operation, a: Interval<L>, b: Interval<L>)
     }
 }
 
-impl OfIntervals for Function {
-    #[inline(always)]
-    fn of<L: DoubleLanes>(
-        &self,
-        a: Interval<L>,
-        b: Interval<L>,
-        domain: &mut Domain<L>,
-    ) -> Interval<L> {
-        match self {
-            Self::Exponential => a.exponential(),
-            Self::Logarithm => a.logarithm(domain),
-            Self::Sine => a.sine_cosine().0,
-            Self::Cosine => a.sine_cosine().1,
-            Self::SineThin => a.sine_cosine_thin().0,
-            Self::CosineThin => a.sine_cosine_thin().1,
-            Self::Tangent => a.tangent(domain),
-            Self::ArcSine => a.arc_sine(domain),
-            Self::ArcCosine => a.arc_cosine(domain),
-            Self::ArcTangent => a.arc_tangent(),
-            Self::ArcTangent2 => a.arc_tangent_of_quotient(b, domain),
-            Self::HyperbolicSine => a.hyperbolic_sine(),
-            Self::HyperbolicCosine => a.hyperbolic_cosine(),
-            Self::HyperbolicTangent => a.hyperbolic_tangent(),
-            Self::Power => a.power(b, domain),
-            Self::Seventh => a.whole_power(7),
-            Self::MinusFourth => a.whole_power(-4),
-        }
+#[inline(always)]
+fn of<L: DoubleLanes>(
+    function: Function,
+    a: Interval<L>,
+    b: Interval<L>,
+    domain: &mut Domain<L>,
+) -> Interval<L> {
+    match function {
+        Function::Exponential => a.exponential(),
+        Function::Logarithm => a.logarithm(domain),
+        Function::Sine => a.sine_cosine().0,
+        Function::Cosine => a.sine_cosine().1,
+        Function::SineThin => a.sine_cosine_thin().0,
+        Function::CosineThin => a.sine_cosine_thin().1,
+        Function::Tangent => a.tangent(domain),
+        Function::ArcSine => a.arc_sine(domain),
+        Function::ArcCosine => a.arc_cosine(domain),
+        Function::ArcTangent => a.arc_tangent(),
+        Function::ArcTangent2 => a.arc_tangent_of_quotient(b, domain),
+        Function::HyperbolicSine => a.hyperbolic_sine(),
+        Function::HyperbolicCosine => a.hyperbolic_cosine(),
+        Function::HyperbolicTangent => a.hyperbolic_tangent(),
+        Function::Power => a.power(b, domain),
+        Function::Seventh => a.whole_power(7),
+        Function::MinusFourth => a.whole_power(-4),
     }
 }

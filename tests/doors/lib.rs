@@ -9,7 +9,6 @@
 
 mod columns;
 pub mod fields;
-pub mod fresnel;
 pub mod functions;
 pub mod intervals;
 pub mod lights;
@@ -25,14 +24,3 @@ pub enum Made<S, D> {
     Single(S),
     Double(D),
 }
-
-/// Evaluates the same expression for tables of either precision.
-macro_rules! of {
-    ($made:expr, |$tables:ident| $result:expr) => {
-        match $made {
-            $crate::Made::Single($tables) => $result,
-            $crate::Made::Double($tables) => $result,
-        }
-    };
-}
-use of;

@@ -14,10 +14,8 @@ use etalon_lanes::math::instructions::Precision;
 use etalon_lanes::math::lanes::{Lanes, Mask, Scalar, WIDEST};
 use etalon_lanes::math::vec3::Vec3;
 
-/// Wavelengths.
 pub const C: usize = 4;
 
-/// What is asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Subject {
     /// A material of the list.
@@ -29,9 +27,7 @@ pub enum Subject {
 /// A point of a surface, and how a path comes there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setting {
-    /// The arithmetic.
     pub precision: Precision,
-    /// What the path carries.
     pub transport: Transport,
     /// Unit normal on the side of wo.
     pub normal: DVec3,
@@ -39,9 +35,7 @@ pub struct Setting {
     pub front: bool,
     /// Unit direction towards where the path comes from.
     pub wo: DVec3,
-    /// The material's spectra.
     pub spectra: [[f64; C]; 2],
-    /// The material's numbers.
     pub numbers: [f64; 3],
     /// Refractive index on the outward side.
     pub outside: [f64; C],

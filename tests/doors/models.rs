@@ -13,8 +13,8 @@ use etalon_lanes::sample::sequence::Identity;
 use etalon_lanes::shape::Ray;
 use etalon_lanes::shape::lanes::balls::Balls;
 
-use crate::columns::load_rays;
-use crate::{Made, of};
+use crate::Made;
+use crate::columns::{jobs, load_rays};
 
 /// A scene's tables in either precision.
 pub type AnyModel<'a> = Made<&'a Model<f32>, &'a Model<f64>>;
@@ -50,109 +50,72 @@ pub struct Asking {
     pub except: u32,
 }
 
-/// The nearest hits of rays, and whether they are blocked.
-pub fn answers(
-    set: Instructions,
-    model: AnyModel,
-    questions: &[Question],
-    asking: Asking,
-) -> Vec<Answer> {
-    of!(model, |model| set.run(Answers {
-        model,
-        questions,
-        asking
-    }))
-}
-
-struct Answers<'a, T: Scalar> {
-    model: &'a Model<T>,
-    questions: &'a [Question],
-    asking: Asking,
-}
-
-impl<T: Scalar> Job<T> for Answers<'_, T> {
-    type Output = Vec<Answer>;
-
-    #[inline(always)]
-    fn run<L: Lanes<Scalar = T>>(self, l: L) -> Vec<Answer> {
-        if self.asking.twice {
-            self.by(Twice(l))
-        } else {
-            self.by(l)
+jobs! {
+    /// The nearest hits of rays, and whether they are blocked.
+    answers<'a>(l: L, model of Model, questions: &'a [Question], asking: Asking) -> Vec<Answer> {
+        match asking.twice {
+            true => answered(Twice(l), model, questions, asking),
+            false => answered(l, model, questions, asking),
         }
     }
-}
 
-impl<T: Scalar> Answers<'_, T> {
-    #[inline(always)]
-    fn by<L: Lanes<Scalar = T>>(&self, l: L) -> Vec<Answer> {
-        let mut answers = Vec::with_capacity(self.questions.len());
-        for questions in self.questions.chunks(L::COUNT) {
-            let (mut object, mut inward) = ([NOTHING; WIDEST], 0);
-            for (i, question) in questions.iter().enumerate() {
-                object[i] = question.leaving;
-                inward |= u32::from(question.inward) << i;
-            }
-            let rays = Rays {
-                ray: load_rays(l, questions.iter().map(|question| question.ray)),
-                leaving: l.load_int(&object),
-                inward: l.mask_from_bits(inward),
-            };
-            let active = l.mask_from_bits(u32::MAX >> (WIDEST - questions.len()));
-            let mut rungs = Rungs::default();
-            let found = nearest(l, self.model, &rays, active, &mut rungs);
-            let shadow = Shadow {
-                rays,
-                limit: l.real(self.asking.limit),
-                except: l.int(self.asking.except),
-            };
-            let blocked = occluded(l, self.model, &shadow, active, &mut rungs).bits();
-            answers.extend((0..questions.len()).map(|i| {
-                let part = l.int_lane(found.part, i);
-                let entry = self.model.parts.entries.get(part as usize);
-                Answer {
-                    t: l.lane(found.t, i).to_f64(),
-                    part,
-                    object: entry.map_or(NOTHING, |entry| entry.object),
-                    blocked: blocked >> i & 1 == 1,
-                }
-            }));
-        }
-        answers
-    }
-}
-
-/// The sets of the balls, among objects that are such, that rays are said to come near, object k of
-/// the list as bit k; each ray is asked in all lanes.
-///
-/// # Panics
-/// If an object is no ball.
-pub fn balls_near(set: Instructions, model: AnyModel, objects: &[u32], rays: &[Ray]) -> Vec<u32> {
-    of!(model, |model| {
+    /// The sets of the balls, among objects that are such, that rays are said to come near, object k
+    /// of the list as bit k; each ray is asked in all lanes.
+    ///
+    /// # Panics
+    /// If an object is no ball.
+    balls_near<'a>(l: L, model of Model, objects: &'a [u32], rays: &'a [Ray]) -> Vec<u32> {
         let balls = Balls::new(objects, &model.shapes).expect("balls");
-        set.run(BallsNear { balls, rays })
-    })
-}
-
-struct BallsNear<'a, T> {
-    balls: Balls<T>,
-    rays: &'a [Ray],
-}
-
-impl<T: Scalar> Job<T> for BallsNear<'_, T> {
-    type Output = Vec<u32>;
-
-    #[inline(always)]
-    fn run<L: Lanes<Scalar = T>>(self, l: L) -> Vec<u32> {
-        let mut all = Vec::with_capacity(self.rays.len());
-        for &ray in self.rays {
+        let mut all = Vec::with_capacity(rays.len());
+        for &ray in rays {
             let ray = load_rays(l, std::iter::once(ray));
-            let limit = l.real(f64::INFINITY);
-            let near = self.balls.near(l, &ray, [l.int(u32::MAX)], limit);
+            let near = balls.near(l, &ray, [l.int(u32::MAX)], l.real(f64::INFINITY));
             all.push(l.int_lane(near, 0));
         }
         all
     }
+}
+
+#[inline(always)]
+fn answered<L: Lanes>(
+    l: L,
+    model: &Model<L::Scalar>,
+    questions: &[Question],
+    asking: Asking,
+) -> Vec<Answer> {
+    let mut answers = Vec::with_capacity(questions.len());
+    for questions in questions.chunks(L::COUNT) {
+        let (mut object, mut inward) = ([NOTHING; WIDEST], 0);
+        for (i, question) in questions.iter().enumerate() {
+            object[i] = question.leaving;
+            inward |= u32::from(question.inward) << i;
+        }
+        let rays = Rays {
+            ray: load_rays(l, questions.iter().map(|question| question.ray)),
+            leaving: l.load_int(&object),
+            inward: l.mask_from_bits(inward),
+        };
+        let active = l.mask_from_bits(u32::MAX >> (WIDEST - questions.len()));
+        let mut rungs = Rungs::default();
+        let found = nearest(l, model, &rays, active, &mut rungs);
+        let shadow = Shadow {
+            rays,
+            limit: l.real(asking.limit),
+            except: l.int(asking.except),
+        };
+        let blocked = occluded(l, model, &shadow, active, &mut rungs).bits();
+        answers.extend((0..questions.len()).map(|i| {
+            let part = l.int_lane(found.part, i);
+            let entry = model.parts.entries.get(part as usize);
+            Answer {
+                t: l.lane(found.t, i).to_f64(),
+                part,
+                object: entry.map_or(NOTHING, |entry| entry.object),
+                blocked: blocked >> i & 1 == 1,
+            }
+        }));
+    }
+    answers
 }
 
 /// Lengths of at most so many segments of a path of 4 wavelengths that begins with a ray, by the

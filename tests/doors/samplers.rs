@@ -12,7 +12,7 @@ use etalon_lanes::sample::warp::{
     cosine_hemisphere, cosine_hemisphere_pdf, square_to_disk, uniform_sphere,
 };
 
-use crate::columns::columns;
+use crate::columns::{columns, jobs};
 
 /// Which numbers of a sample.
 #[derive(Debug, Clone, Copy)]
@@ -35,57 +35,48 @@ impl Numbers {
     }
 }
 
-/// Numbers of samples (x, y, replicate, index), the others of the five zero.
-pub fn sample_numbers(
-    set: Instructions,
-    precision: Precision,
-    sequence: &Sequence,
-    numbers: Numbers,
-    samples: &[[u32; 4]],
-) -> Vec<[f64; 5]> {
-    let job = SampleNumbers {
-        sequence,
-        numbers,
-        samples,
-    };
-    crate::columns::run_in(set, precision, job)
-}
-
-struct SampleNumbers<'a> {
-    sequence: &'a Sequence,
-    numbers: Numbers,
-    samples: &'a [[u32; 4]],
-}
-
-impl<T: Scalar> Job<T> for SampleNumbers<'_> {
-    type Output = Vec<[f64; 5]>;
-
-    #[inline(always)]
-    fn run<L: Lanes<Scalar = T>>(self, l: L) -> Vec<[f64; 5]> {
-        let mut all = Vec::with_capacity(self.samples.len());
-        for samples in self.samples.chunks(L::COUNT) {
+jobs! {
+    /// Numbers of samples (x, y, replicate, index), the others of the five zero.
+    sample_numbers<'a>(
+        l: L, sequence: &'a Sequence, numbers: Numbers, samples: &'a [[u32; 4]]
+    ) -> Vec<[f64; 5]> {
+        let mut all = Vec::with_capacity(samples.len());
+        for samples in samples.chunks(L::COUNT) {
             let [x, y, replicate, index] = columns_of(samples).map(|column| l.load_int(&column));
-            let mut id = self.sequence.identity(l, x, y, replicate, index);
+            let mut id = sequence.identity(l, x, y, replicate, index);
             let zero = l.real(0.0);
-            let numbers = match self.numbers {
+            let numbers = match numbers {
                 Numbers::Camera => {
-                    let sample = self.sequence.camera(l, id, true);
+                    let sample = sequence.camera(l, id, true);
                     let ([u, v], [s, t]) = (sample.pixel, sample.lens);
                     [u, v, sample.wavelength, s, t]
                 }
                 Numbers::Pair(slot, bounce) => {
                     id.bounce = l.int(bounce);
-                    let [u, v] = self.sequence.pair(l, id, slot);
+                    let [u, v] = sequence.pair(l, id, slot);
                     [u, v, zero, zero, zero]
                 }
                 Numbers::Single(slot, bounce) => {
                     id.bounce = l.int(bounce);
-                    let u = self.sequence.single(l, id, slot);
-                    [u, zero, zero, zero, zero]
+                    [sequence.single(l, id, slot), zero, zero, zero, zero]
                 }
             };
             let columns = numbers.map(|x| array(l, x));
             all.extend((0..samples.len()).map(|i| columns.map(|column| column[i].to_f64())));
+        }
+        all
+    }
+
+    /// The images of words, each with its seed.
+    shuffled<'a>(l: L, shuffle: Shuffle, words: &'a [[u32; 2]]) -> Vec<u32> {
+        let mut all = Vec::with_capacity(words.len());
+        for words in words.chunks(L::COUNT) {
+            let [x, seed] = columns_of(words).map(|column| l.load_int(&column));
+            let image = match shuffle {
+                Shuffle::Scramble => nested_scramble(l, x, seed),
+                Shuffle::Permutation(count) => permute(l, x, count, seed),
+            };
+            all.extend(&int_array(l, image)[..words.len()]);
         }
         all
     }
@@ -109,37 +100,6 @@ pub enum Shuffle {
     Scramble,
     /// A permutation of the words below a number.
     Permutation(u32),
-}
-
-/// The images of words, each with its seed.
-pub fn shuffled(
-    set: Instructions,
-    precision: Precision,
-    shuffle: Shuffle,
-    words: &[[u32; 2]],
-) -> Vec<u32> {
-    crate::columns::run_in(set, precision, Shuffled(shuffle, words))
-}
-
-struct Shuffled<'a>(Shuffle, &'a [[u32; 2]]);
-
-impl<T: Scalar> Job<T> for Shuffled<'_> {
-    type Output = Vec<u32>;
-
-    #[inline(always)]
-    fn run<L: Lanes<Scalar = T>>(self, l: L) -> Vec<u32> {
-        let Self(shuffle, words) = self;
-        let mut all = Vec::with_capacity(words.len());
-        for words in words.chunks(L::COUNT) {
-            let [x, seed] = columns_of(words).map(|column| l.load_int(&column));
-            let image = match shuffle {
-                Shuffle::Scramble => nested_scramble(l, x, seed),
-                Shuffle::Permutation(count) => permute(l, x, count, seed),
-            };
-            all.extend(&int_array(l, image)[..words.len()]);
-        }
-        all
-    }
 }
 
 columns! {

@@ -11,7 +11,7 @@ use etalon_lanes::shape::lanes::{Enclosure, LaneRay, LaneShape};
 use etalon_lanes::shape::line::{LocalRay, Span};
 use etalon_lanes::shape::{Hit, Placed, Ray, ShapeKind};
 
-use crate::columns::{load_rays, vector};
+use crate::columns::{jobs, load_rays, vector};
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RaySpan {
@@ -26,20 +26,11 @@ pub struct RaySpan {
     pub miss: bool,
 }
 
-/// Spans of rays, each with its shape.
-pub fn spans(set: Instructions, precision: Precision, cases: &[(&Placed, Ray)]) -> Vec<RaySpan> {
-    crate::columns::run_in(set, precision, Spans(cases))
-}
-
-struct Spans<'a>(&'a [(&'a Placed, Ray)]);
-
-impl<T: Scalar> Job<T> for Spans<'_> {
-    type Output = Vec<RaySpan>;
-
-    #[inline(always)]
-    fn run<L: Lanes<Scalar = T>>(self, l: L) -> Vec<RaySpan> {
-        let mut spans = Vec::with_capacity(self.0.len());
-        for (placed, ray) in self.0 {
+jobs! {
+    /// Spans of rays, each with its shape.
+    spans<'a>(l: L, cases: &'a [(&'a Placed, Ray)]) -> Vec<RaySpan> {
+        let mut spans = Vec::with_capacity(cases.len());
+        for (placed, ray) in cases {
             let (kind, inverse) = (Some(placed.kind), placed.ladder.inverse());
             let reach = ray.origin.abs().max_element();
             let shape = LaneShape::new(kind, &placed.to_world, &inverse, reach);

@@ -4,7 +4,7 @@ use etalon_lanes::math::instructions::{Instructions, Job, Precision};
 use etalon_lanes::math::lanes::{Int, Lanes, Mask, Scalar, WIDEST};
 use etalon_lanes::math::packet::{array, int_array};
 
-use crate::columns::widen;
+use crate::columns::{jobs, widen};
 
 /// What operations make of words a and b.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -23,29 +23,16 @@ pub struct Results {
     pub same: Vec<bool>,
 }
 
-/// All operations, on as many words as fill packets of any width.
-///
-/// # Panics
-/// If the number of words is no multiple of [`WIDEST`].
-pub fn operations(set: Instructions, precision: Precision, a: &[u32], b: &[u32]) -> Results {
-    assert!(a.len() == b.len() && a.len().is_multiple_of(WIDEST));
-    crate::columns::run_in(set, precision, Operations { a, b })
-}
-
-struct Operations<'a> {
-    a: &'a [u32],
-    b: &'a [u32],
-}
-
-impl<T: Scalar> Job<T> for Operations<'_> {
-    type Output = Results;
-
-    #[inline(always)]
-    fn run<L: Lanes<Scalar = T>>(self, l: L) -> Results {
+jobs! {
+    /// All operations, on as many words as fill packets of any width.
+    ///
+    /// # Panics
+    /// If the number of words is no multiple of [`WIDEST`].
+    operations<'a>(l: L, a: &'a [u32], b: &'a [u32]) -> Results {
+        assert!(a.len() == b.len() && a.len().is_multiple_of(WIDEST));
         let mut results = Results::default();
-        for from in (0..self.a.len()).step_by(L::COUNT) {
-            let a = l.load_int(&self.a[from..]);
-            let b = l.load_int(&self.b[from..]);
+        for from in (0..a.len()).step_by(L::COUNT) {
+            let [a, b] = [a, b].map(|words| l.load_int(&words[from..]));
             let words = [
                 a.plus(b),
                 a.minus(b),

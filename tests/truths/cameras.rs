@@ -118,12 +118,8 @@ fn ellipsoid() -> Vec<Case> {
 #[test]
 fn a_sheared_sphere_is_hit_where_and_how_it_must() {
     let (t, matrix, _) = sheared();
-    let m = matrix.transpose();
-    let row = |v: DVec3| [v.x, v.y, v.z, 0.0];
-    let to_world = Affine {
-        rows: [row(m.x_axis), row(m.y_axis), row(m.z_axis)],
-    };
-    let placed = Placed::new(ShapeKind::Sphere, &to_world).unwrap();
+    let rows = [0, 1, 2].map(|i| matrix.row(i).extend(0.0).to_array());
+    let placed = Placed::new(ShapeKind::Sphere, &Affine { rows }).unwrap();
     let ray = Ray {
         origin: vector(&t["setup"]["ray_o"]),
         direction: vector(&t["setup"]["ray_d"]),

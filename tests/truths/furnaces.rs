@@ -36,10 +36,8 @@ pub fn fresnel_conductor(cosine: f64, n: f64, k: f64) -> f64 {
     let a = ((a2b2 + t0) / 2.0).max(0.0).sqrt();
     let rs =
         (a2b2 + cosine * cosine - 2.0 * a * cosine) / (a2b2 + cosine * cosine + 2.0 * a * cosine);
-    let (first, second) = (
-        cosine * cosine * a2b2 + sine2 * sine2,
-        2.0 * a * cosine * sine2,
-    );
+    let first = cosine * cosine * a2b2 + sine2 * sine2;
+    let second = 2.0 * a * cosine * sine2;
     let rp = rs * (first - second) / (first + second);
     (rs + rp) / 2.0
 }
@@ -220,17 +218,12 @@ fn integrating_sphere() -> Vec<Case> {
     let once = rho * intensity / (PI * r * r);
     agree(once / (1.0 - rho * (1.0 - port)), wall);
     // The port is a black disk across its chord; its rim may stand out of the sphere.
-    let height = r * half_angle.cos();
+    let (height, rim) = (r * half_angle.cos(), 1.01 * r * half_angle.sin());
     let scene = Text::perspective(DVec3::new(0.0, 0.0, 0.9 * height), -DVec3::Z, 40.0)
         .material("wall", &format!("diffuse = {rho:?}"))
         .material("port", "black = true")
         .sphere("wall", r, DVec3::ZERO)
-        .disk(
-            "port",
-            1.01 * r * half_angle.sin(),
-            DVec3::Z,
-            height * DVec3::Z,
-        )
+        .disk("port", rim, DVec3::Z, height * DVec3::Z)
         .point_light(DVec3::ZERO, intensity);
     let mut cases = vec![Case::new("integrating_sphere", scene.clone(), wall)];
     for (m, limited) in t["exact"]["L_m"].as_object().unwrap() {
@@ -356,12 +349,10 @@ fn facing_mirrors() -> Vec<Case> {
         cases.push(Case::new(format!("facing_mirrors j = {j}"), scene, exact));
     }
     let exact = t.exact("L_emitting");
+    let upper = format!("{metal}, emit = {le:?}, sides = \"back\"");
     let scene = look
         .material("lower", &format!("{metal}, emit = {le:?}"))
-        .material(
-            "upper",
-            &format!("{metal}, emit = {le:?}, sides = \"back\""),
-        )
+        .material("upper", &upper)
         .object("plane = {}", "lower")
         .placed("plane = {}", "upper", DVec3::AXES, DVec3::Z);
     cases.push(Case::new("facing_mirrors emitting", scene, exact));

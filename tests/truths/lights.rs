@@ -159,10 +159,8 @@ fn occluder() -> Vec<Case> {
         .map(|row| {
             let x = number(&row["x"]);
             let d = (h * h + x * x).sqrt();
-            agree(
-                rho * lenv * (1.0 - sphere_factor(r, d, h / d)),
-                number(&row["L_o"]),
-            );
+            let visible = 1.0 - sphere_factor(r, d, h / d);
+            agree(rho * lenv * visible, number(&row["L_o"]));
             let scene = Text::orthographic(DVec3::new(x, 0.0, 1e-3), -DVec3::Z, 1e-4)
                 .material("floor", &format!("diffuse = {rho:?}"))
                 .material("black", "black = true")
@@ -219,7 +217,7 @@ fn disks_factor(r1: f64, r2: f64, h: f64) -> f64 {
 /// Parallel rays average uniformly over a plate: the picture's mean is the view factor.
 fn plates() -> Vec<Case> {
     let t = truth("plate_view_factors");
-    let [opposed, perpendicular, disks] =
+    let [opposed, upright, disks] =
         ["opposed", "perpendicular", "disks"].map(|key| numbers(&t["setup"][key]));
     let exact = |key: &str| t.exact(key);
     let view = |centre: DVec3, side: f64| {
@@ -240,9 +238,7 @@ fn plates() -> Vec<Case> {
     let case = Case::new("plate_view_factors opposed", scene, exact("F_opposed"));
     let mut cases = vec![case.mapped(0.0, side * side / (a * b))];
 
-    let [w, h, l] = perpendicular[..] else {
-        panic!()
-    };
+    let [w, h, l] = upright[..] else { panic!() };
     let side = w.max(l);
     let centre = w / 2.0 * x;
     let scene = view(centre, side)

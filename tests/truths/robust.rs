@@ -113,13 +113,11 @@ fn shells() -> Vec<Case> {
     let (near, far) = (1.0, 1.00004);
     let (rho, le) = ([0.3, 0.6], [1.0, 0.25]);
     let [inner, outer] = two_bodies(near / far, rho, le);
-    let mut cases: Vec<Case> = [(true, inner), (false, outer)]
-        .into_iter()
-        .map(|(inward, exact)| {
-            let text = between([near, far], rho, le, inward);
-            Case::new(format!("shells inward {inward}"), text, exact)
-        })
-        .collect();
+    let shell = |(inward, exact)| {
+        let text = between([near, far], rho, le, inward);
+        Case::new(format!("shells inward {inward}"), text, exact)
+    };
+    let mut cases = Vec::from([(true, inner), (false, outer)].map(shell));
     let look = Text::orthographic(DVec3::new(0.0, 0.0, 3.0), -DVec3::Z, 0.1);
     let outside = look
         .clone()
@@ -157,6 +155,7 @@ fn still_life(scale: f64, shift: DVec3, albedo: f64) -> Text {
     let at = |p: DVec3| p * scale + shift;
     let (x, y, z) = (scale * DVec3::X, scale * DVec3::Y, scale * DVec3::Z);
     let towards = DVec3::new(0.0, -0.4, -1.0) * scale;
+    let beside = at(DVec3::new(-1.0, 0.5, 0.3));
     Text::perspective(at(DVec3::new(0.0, 3.0, 6.0)), towards, 40.0)
         .size([16, 16])
         .material("floor", &format!("diffuse = {albedo:?}"))
@@ -166,12 +165,7 @@ fn still_life(scale: f64, shift: DVec3, albedo: f64) -> Text {
         .rectangle("floor", 4.0 * x, -4.0 * z, at(DVec3::ZERO))
         .rectangle("lamp", x, 0.5 * z, at(DVec3::new(0.0, 5.0, 0.0)))
         .sphere("clear", 0.7 * scale, at(DVec3::new(1.0, 0.7, 0.0)))
-        .placed(
-            "cube = { side = 1 }",
-            "silver",
-            [x, y, z],
-            at(DVec3::new(-1.0, 0.5, 0.3)),
-        )
+        .placed("cube = { side = 1 }", "silver", [x, y, z], beside)
         .environment(0.5)
 }
 

@@ -24,9 +24,6 @@ pub struct Binary {
 
 impl Binary {
     /// The etalon at `path`, which reads scenes under `root`.
-    ///
-    /// # Errors
-    /// A sentence where it does not run or has no instruction set.
     pub fn new(path: &Path, root: &Path) -> Result<Self, String> {
         let path = std::path::absolute(path);
         let mut binary = Self {
@@ -52,9 +49,6 @@ impl Binary {
     }
 
     /// What `etalon render` makes of these arguments.
-    ///
-    /// # Errors
-    /// A sentence with what etalon said.
     pub fn render(&self, arguments: &[String]) -> Result<Picture, String> {
         let failed = |reason: std::io::Error| reason.to_string();
         let folder = tempfile::tempdir_in(self.folder.path()).map_err(failed)?;

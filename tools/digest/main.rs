@@ -2,6 +2,8 @@
 //! every scene small, in each precision with each instruction set of the machine, hashes the
 //! pixels, and compares with the tables beside this file.
 //!
+//! Errors are sentences, with what etalon said.
+//!
 //!     cargo bench --bench digest
 //!     cargo bench --bench digest -- --binary another/etalon --only fig7
 

@@ -38,7 +38,6 @@ const PRECISIONS: [&str; 2] = ["f32", "f64"];
 /// Hexadecimal digits that are kept of a hash: 64 bits, against accidents.
 const DIGITS: usize = 16;
 
-/// A picture to render.
 #[derive(Debug)]
 pub struct Job<'a> {
     variant: &'a Variant,
@@ -47,7 +46,6 @@ pub struct Job<'a> {
     precision: &'static str,
 }
 
-/// The pictures of a scene.
 pub fn jobs(variant: &Variant) -> impl Iterator<Item = Job<'_>> {
     let job = move |(rendering, options)| {
         PRECISIONS.map(|precision| Job {
@@ -62,9 +60,6 @@ pub fn jobs(variant: &Variant) -> impl Iterator<Item = Job<'_>> {
 
 impl Job<'_> {
     /// The picture's hash with each instruction set.
-    ///
-    /// # Errors
-    /// A sentence with what etalon said.
     pub fn hashes(&self, binary: &Binary) -> Result<Hashes, String> {
         let [width, height] = self.variant.size;
         let longest = width.max(height);
@@ -82,7 +77,6 @@ impl Job<'_> {
         sets.collect::<Result<_, String>>().map(Hashes)
     }
 
-    /// Its line in the table.
     pub fn row(&self, hashes: &Hashes) -> Vec<String> {
         let ways = [self.rendering.to_owned(), self.precision.to_owned()];
         let key = self.variant.key().into_iter().chain(ways);

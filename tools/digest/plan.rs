@@ -53,9 +53,6 @@ const FINDERS: [(&str, &str); 4] = [
 ];
 
 /// The scene's line in the table.
-///
-/// # Errors
-/// A sentence with what etalon said, or about words that are not known here.
 pub fn row(binary: &Binary, variant: &Variant) -> Result<Vec<String>, String> {
     let mut arguments = variant.arguments();
     arguments.extend(["--crop", "0,0,1,1"].map(str::to_owned));
@@ -125,7 +122,6 @@ fn translated<'a>(pairs: &[(&str, &'a str)], words: &str) -> Result<&'a str, Str
         .ok_or_else(|| format!("not known to tools/digest/plan.rs: {words:?}"))
 }
 
-/// An attribute as text.
 fn text(picture: &Picture, name: &str) -> Result<String, String> {
     match picture.attribute(name) {
         Some(Attribute::Text(text)) => Ok(text.clone()),

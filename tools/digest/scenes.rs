@@ -33,9 +33,6 @@ impl Variant {
 }
 
 /// The variants of all scenes that are wanted by their keys; a file's own scene is one of them.
-///
-/// # Errors
-/// A sentence about a file that cannot be read, or that there is no such scene.
 pub fn variants(root: &Path, wanted: impl Fn(&[String]) -> bool) -> Result<Vec<Variant>, String> {
     let mut all = Vec::new();
     for folder in FOLDERS {
@@ -56,7 +53,6 @@ pub fn variants(root: &Path, wanted: impl Fn(&[String]) -> bool) -> Result<Vec<V
     Ok(all)
 }
 
-/// A file's own scene and its panels.
 fn panels(root: &Path, scene: &str) -> Result<Vec<Variant>, SceneError> {
     let path = root.join(scene);
     let names = Scene::panels(&path)?;

@@ -28,9 +28,6 @@ impl Table {
     }
 
     /// The table at `path`: the rows that are wanted by their scene and panel.
-    ///
-    /// # Errors
-    /// A sentence about a file that cannot be read or has other columns.
     pub fn read(
         kind: &'static Kind,
         path: &Path,
@@ -48,9 +45,6 @@ impl Table {
     }
 
     /// Writes the table to `path`.
-    ///
-    /// # Errors
-    /// A sentence about a file that cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), String> {
         let write = || {
             let mut file = csv::Writer::from_path(path)?;

@@ -19,6 +19,7 @@ use etalon::inside::planted::Planted;
 use etalon::inside::spectrum::grid::{CELLS, WavelengthGrid};
 use etalon::inside::spectrum::{NM_MAX, NM_MIN};
 use etalon::{Plan, Scene};
+use glam::DMat3;
 
 /// What can be wrong; [`MISTAKES`] has the words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,7 +37,6 @@ pub enum Mistake {
     Loop(Planted),
 }
 
-/// All of them, with the words of the table.
 pub const MISTAKES: &[(Mistake, &str)] = &[
     (
         Mistake::Reflectance,
@@ -238,8 +238,9 @@ fn normals<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
     let mut found = false;
     let parts = &mut model.parts;
     for (number, entry) in parts.entries.iter_mut().enumerate() {
-        let to_world = &scene.objects[entry.object as usize].value.to_world;
-        let rows = inverse_rows(&to_world.rows);
+        let object = &scene.objects[entry.object as usize].value;
+        let [a, b, c] = object.to_world.columns();
+        let inverse = DMat3::from_cols(a, b, c).inverse();
         let first = parts.first[entry.object as usize] as usize;
         let flat = parts
             .first
@@ -247,8 +248,7 @@ fn normals<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
             .is_none_or(|next| *next == first as u32 + 1);
         let axis = if flat { 2 } else { number - first };
         // Sizes are no shear: canonical coordinates are those of the shape of size 1.
-        let size = scene.objects[entry.object as usize].value.size.to_array()[axis];
-        let length = rows[axis].iter().map(|x| x * x).sum::<f64>().sqrt() * size.abs();
+        let length = inverse.row(axis).length() * object.size[axis].abs();
         if (length - 1.0).abs() < 1e-12 {
             continue;
         }
@@ -266,14 +266,6 @@ fn normals<T: Scalar>(scene: &Scene, model: &mut Model<T>) -> bool {
         }
     }
     found
-}
-
-/// Rows of the inverse's linear part.
-fn inverse_rows(rows: &[[f64; 4]; 3]) -> [[f64; 3]; 3] {
-    let row = |i: usize| glam::DVec3::new(rows[i][0], rows[i][1], rows[i][2]);
-    let matrix = glam::DMat3::from_cols(row(0), row(1), row(2)).transpose();
-    let inverse = matrix.inverse().transpose();
-    [inverse.x_axis, inverse.y_axis, inverse.z_axis].map(|v| v.to_array())
 }
 
 fn light_choice<T: Scalar>(model: &mut Model<T>) -> bool {

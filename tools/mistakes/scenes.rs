@@ -22,12 +22,10 @@ camera = { from = [0, 0, 0.9], to = [0.2, 0.1, 0], fov = 70 }
 image = { size = [24, 24], spp = 1 }
 materials.wall = { diffuse = 0.8, emit = 0.2, sides = "back" }
 materials.ball = { diffuse = 0.6 }
-[[object]]
-shape = "cube"
-material = "wall"
-[[object]]
-shape = { sphere = { radius = 0.3, center = [0.2, 0.1, -0.3] } }
-material = "ball"
+object = [
+    { shape = "cube", material = "wall" },
+    { shape = { sphere = { radius = 0.3, center = [0.2, 0.1, -0.3] } }, material = "ball" },
+]
 "#;
 
 /// Radiance is ρ/π · E · cos 60°.
@@ -35,10 +33,7 @@ const SLANTING_SUN: &str = r#"
 camera = { from = [0, 3, 0], to = [0, 0, 0], up = [0, 0, 1], orthographic = 2 }
 image = { size = [24, 24], spp = 1, max_depth = 2 }
 materials.floor = { diffuse = { rgb = [0.6, 0.4, 0.3] } }
-[[object]]
-shape = { rectangle = { size = [9, 9] } }
-material = "floor"
-transform = [{ rotate_x = -90 }]
+object = [{ shape = { rectangle = { size = [9, 9] } }, material = "floor", transform = [{ rotate_x = -90 }] }]
 [[light]]
 direction = [0.8660254037844386, -0.5, 0]
 irradiance = "D65"
@@ -50,10 +45,7 @@ environment = "D65"
 camera = { from = [0, 0, 5], to = [0, 0, 0], orthographic = 1 }
 image = { size = [24, 24], spp = 1 }
 materials.metal = { mirror = "Al" }
-[[object]]
-shape = { rectangle = { size = [10, 10] } }
-material = "metal"
-transform = [{ rotate_y = 60 }]
+object = [{ shape = { rectangle = { size = [10, 10] } }, material = "metal", transform = [{ rotate_y = 60 }] }]
 "#;
 
 /// Metal under all angles.
@@ -63,12 +55,10 @@ camera = { from = [0, 0, 6], to = [0, 0, 0], fov = 24 }
 image = { size = [24, 24], spp = 1, max_depth = 3 }
 materials.aluminium = { mirror = "Al" }
 materials.copper = { mirror = "Cu" }
-[[object]]
-shape = { sphere = { radius = 0.6, center = [-0.6, 0, 0] } }
-material = "aluminium"
-[[object]]
-shape = { sphere = { radius = 0.6, center = [0.6, 0, 0] } }
-material = "copper"
+object = [
+    { shape = { sphere = { radius = 0.6, center = [-0.6, 0, 0] } }, material = "aluminium" },
+    { shape = { sphere = { radius = 0.6, center = [0.6, 0, 0] } }, material = "copper" },
+]
 "#;
 
 /// A lamp far behind the plane of focus: a spot whose area grows as the radius squared. The picture
@@ -77,10 +67,7 @@ const BLURRED_SPOT: &str = r#"
 camera = { from = [0, 0, 0], to = [0, 0, 1], fov = 0.5, lens = { radius = 0.2, focus = 2 } }
 image = { size = [24, 24], spp = 1 }
 materials.lamp = { emit = { blackbody = 4000, scale = 1e-3 }, sides = "both" }
-[[object]]
-shape = { disk = { radius = 0.15 } }
-material = "lamp"
-transform = [{ translate = [0, 0, 4] }]
+object = [{ shape = { disk = { radius = 0.15 } }, material = "lamp", transform = [{ translate = [0, 0, 4] }] }]
 "#;
 
 /// E (1 + ρ + ρ² + ρ³ + ρ⁴) inside a closed sphere.
@@ -88,9 +75,7 @@ const FIVE_SEGMENTS: &str = r#"
 camera = { from = [0, 0, 0], to = [0, 0, 1], fov = 60 }
 image = { size = [24, 24], spp = 1, max_depth = 5 }
 materials.wall = { diffuse = 0.7, emit = 0.3, sides = "back" }
-[[object]]
-shape = "sphere"
-material = "wall"
+object = [{ shape = "sphere", material = "wall" }]
 "#;
 
 /// Cards and a block under shear, lit by a lamp.
@@ -136,7 +121,6 @@ point = [1.2, 1.5, 0]
 intensity = 1.5
 "#;
 
-/// A scene of the list.
 pub fn scene(text: &str) -> Scene {
     Scene::parse(text).unwrap_or_else(|error| panic!("{error}"))
 }

@@ -24,13 +24,11 @@ const NO_MORE: Paths = Paths {
     to_sharpen: 0,
 };
 
-/// All cases, planned once.
 pub struct Suite {
     cases: Vec<(Case, Planned)>,
     levels: Levels,
 }
 
-/// What came of one run.
 #[derive(Debug, Clone, Default)]
 pub struct Run {
     /// Scenes that raised an alarm.
@@ -44,7 +42,6 @@ pub struct Run {
 }
 
 impl Suite {
-    /// Plans all cases from pilots.
     pub fn new() -> Self {
         let cases: Vec<Case> = SCENES
             .iter()
@@ -55,16 +52,11 @@ impl Suite {
         let levels = Levels::shared(LEVEL, cases.len(), questions);
         let cases = cases.into_iter().map(|case| {
             let pilot = case.render(PILOT, 1).expect("rendered");
-            let planned = plan(&case, (&pilot, PILOT), &pilot, MOST, levels.question);
+            let level = levels.question;
+            let planned = plan(&case, (&pilot, PILOT), &pilot, MOST, level);
             // The reference has the samples of the picture, so its variance is the same.
             let pilot = case.render(planned.spp, 2).expect("rendered");
-            let planned = plan(
-                &case,
-                (&pilot, planned.spp),
-                &pilot,
-                NO_MORE,
-                levels.question,
-            );
+            let planned = plan(&case, (&pilot, planned.spp), &pilot, NO_MORE, level);
             (case, planned)
         });
         Self {
@@ -73,7 +65,6 @@ impl Suite {
         }
     }
 
-    /// Samples and tolerances, in words.
     pub fn text(&self) -> String {
         let line = |(case, planned): &(Case, Planned)| {
             let tolerances = planned.questions.iter().map(|q| q.tolerance);

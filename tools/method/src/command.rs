@@ -19,13 +19,10 @@ pub enum CommandError {
     /// A table cannot be read, or a result not written: what, which file, why.
     #[error("error: cannot {} {}: {}", .0, .1.display(), .2)]
     File(&'static str, PathBuf, String),
-    /// The rays or surfaces cannot be used.
     #[error("error: {0}")]
     Oracle(#[from] OracleError),
-    /// There is no such surface to paint.
     #[error("error: --map: there is no surface \"{name}\"; there are {known}")]
     Surface { name: String, known: String },
-    /// Standard output cannot be written to.
     #[error("error: cannot write the output: {0}")]
     Output(Error),
 }
@@ -86,27 +83,20 @@ fn paint(arguments: &Finders, oracle: &Oracle, name: &str) -> Result<bool, Comma
     };
     let shape = oracle.shape(name).ok_or_else(unknown)?;
     let path = arguments.output.join(format!("finders-{name}.png"));
-    let failed = |reason: String| CommandError::File("write", path.clone(), reason);
     let Some((picture, counts)) = map(shape, arguments.size) else {
-        return Err(failed("the surface cannot be placed".to_owned()));
+        return Err(failed("write", &path)("the surface cannot be placed"));
     };
     prepare(&path)?;
-    picture.save(&path).map_err(|e| failed(e.to_string()))?;
+    picture.save(&path).map_err(failed("write", &path))?;
     let mut text = String::from("finder,precision,steps,wrong,undecided\n");
-    for count in &counts {
-        let contestant = count.contestant;
-        text += &format!(
-            "{},{},{},{},{}\n",
-            contestant.name(),
-            contestant.precision().name(),
-            contestant.steps(),
-            count.wrong,
-            count.undecided
-        );
+    for (contestant, count) in &counts {
+        let (name, precision) = (contestant.name(), contestant.precision().name());
+        let (steps, wrong, undecided) = (contestant.steps(), count.wrong, count.undecided);
+        text += &format!("{name},{precision},{steps},{wrong},{undecided}\n");
     }
     say(&text)?;
     let mut counts = counts.iter();
-    Ok(counts.all(|count| !count.contestant.is_proved() || count.wrong == 0))
+    Ok(counts.all(|(contestant, count)| !contestant.is_proved() || count.wrong == 0))
 }
 
 fn described(contestant: Contestant) -> String {
@@ -119,7 +109,6 @@ fn described(contestant: Contestant) -> String {
     }
 }
 
-/// The results over all classes as a table for people.
 fn summary(results: &[Outcome]) -> String {
     let mut text = String::new();
     for result in results {
@@ -144,9 +133,13 @@ fn say(text: &str) -> Result<(), CommandError> {
         .map_err(CommandError::Output)
 }
 
+/// The error of what was to be done to a file.
+fn failed<E: ToString>(what: &'static str, path: &Path) -> impl FnOnce(E) -> CommandError {
+    move |error| CommandError::File(what, path.to_owned(), error.to_string())
+}
+
 fn read(path: &Path) -> Result<String, CommandError> {
-    let failed = |error: Error| CommandError::File("read", path.to_owned(), error.to_string());
-    std::fs::read_to_string(path).map_err(failed)
+    std::fs::read_to_string(path).map_err(failed("read", path))
 }
 
 /// Makes the directory of a file.
@@ -155,18 +148,14 @@ fn prepare(path: &Path) -> Result<(), CommandError> {
     if parent.as_os_str().is_empty() {
         return Ok(());
     }
-    let failed = |error: Error| CommandError::File("write", parent.clone(), error.to_string());
-    std::fs::create_dir_all(&parent).map_err(failed)
+    std::fs::create_dir_all(&parent).map_err(failed("write", &parent))
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
     prepare(path)?;
-    let failed = |error: Error| CommandError::File("write", path.to_owned(), error.to_string());
-    std::fs::write(path, bytes).map_err(failed)
+    std::fs::write(path, bytes).map_err(failed("write", path))
 }
 
 fn write_chart(path: &Path, drawn: Result<String, ChartError>) -> Result<(), CommandError> {
-    let failed =
-        |error: ChartError| CommandError::File("write", path.to_owned(), error.to_string());
-    write(path, drawn.map_err(failed)?.as_bytes())
+    write(path, drawn.map_err(failed("write", path))?.as_bytes())
 }

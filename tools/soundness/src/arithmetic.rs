@@ -3,36 +3,35 @@
 use std::cmp::Ordering;
 
 use etalon::Instructions;
-use etalon_doors::intervals::{Bounds, Operation, arithmetic};
+use etalon_doors::intervals::{Bounds, Operation, arithmetic, same_bits};
 
 use super::exact::{compare_product, compare_sum};
 use super::random::Source;
 
 /// Whether the bounds hold the exact result of two numbers; true where there is none.
 pub fn holds(operation: Operation, x: f64, y: f64, [low, high]: [f64; 2]) -> bool {
-    let ordered = |bound: f64, order: &dyn Fn(f64) -> Ordering, wanted: Ordering| {
-        // Infinite bounds of the right sign hold everything; NaN and the wrong ones nothing.
-        if bound.is_infinite() {
-            return (bound > 0.0) == (wanted == Ordering::Less);
-        }
-        !bound.is_nan() && (order(bound) == wanted || order(bound) == Ordering::Equal)
-    };
     // The order of the exact result and a bound.
-    let order: Box<dyn Fn(f64) -> Ordering> = match operation {
-        Operation::Sum => Box::new(move |z| compare_sum(x, y, z)),
-        Operation::Difference => Box::new(move |z| compare_sum(x, -y, z)),
-        Operation::Product => Box::new(move |z| compare_product(x, y, z)),
-        Operation::Quotient if y == 0.0 => return true,
+    let order = |z: f64| match operation {
+        Operation::Sum => compare_sum(x, y, z),
+        Operation::Difference => compare_sum(x, -y, z),
+        Operation::Product => compare_product(x, y, z),
         // x / y ⋚ z as x ⋚ z y, turned round for negative y.
-        Operation::Quotient if y < 0.0 => Box::new(move |z| compare_product(z, y, x)),
-        Operation::Quotient => Box::new(move |z| compare_product(z, y, x).reverse()),
-        Operation::SquareRoot if x < 0.0 => return true,
-        Operation::SquareRoot => Box::new(move |z| match z < 0.0 {
-            true => Ordering::Greater,
-            false => compare_product(z, z, x).reverse(),
-        }),
+        Operation::Quotient if y < 0.0 => compare_product(z, y, x),
+        Operation::Quotient => compare_product(z, y, x).reverse(),
+        Operation::SquareRoot if z < 0.0 => Ordering::Greater,
+        Operation::SquareRoot => compare_product(z, z, x).reverse(),
     };
-    ordered(low, &*order, Ordering::Greater) && ordered(high, &*order, Ordering::Less)
+    // Infinite bounds of the right sign hold everything; NaN and the wrong ones nothing.
+    let ordered = |bound: f64, wanted: Ordering| match bound {
+        f64::INFINITY | f64::NEG_INFINITY => (bound > 0.0) == (wanted == Ordering::Less),
+        _ => !bound.is_nan() && [wanted, Ordering::Equal].contains(&order(bound)),
+    };
+    let undefined = match operation {
+        Operation::Quotient => y == 0.0,
+        Operation::SquareRoot => x < 0.0,
+        _ => false,
+    };
+    undefined || ordered(low, Ordering::Greater) && ordered(high, Ordering::Less)
 }
 
 #[derive(Debug, Clone, Default)]
@@ -90,19 +89,14 @@ impl Report {
 /// the rounding outward, to see that this is noticed.
 pub fn check(operation: Operation, seed: u64, count: usize, unsound: bool) -> Report {
     let mut source = Source::new(seed);
-    let (mut a, mut b) = (Bounds::default(), Bounds::default());
-    for _ in 0..count {
-        let [first, second] = source.pair();
-        a.push(first);
-        b.push(second);
-    }
+    let pairs = (0..count).map(|_| <(Bounds, Bounds)>::from(source.pair()));
+    let (a, b): (Vec<_>, Vec<_>) = pairs.unzip();
     let results = Instructions::all().into_iter();
     let results = results.map(|set| arithmetic(set, operation, [&a, &b], unsound));
-    let (first, mut report) = Report::of(results, |a, b| a.same_bits(b));
-    for i in 0..count {
-        let bounds = first.at(i);
-        for x in ends(a.at(i)) {
-            for y in ends(b.at(i)) {
+    let (first, mut report) = Report::of(results, |a, b| same_bits(a, b));
+    for ((a, b), bounds) in a.into_iter().zip(b).zip(first) {
+        for x in ends(a) {
+            for y in ends(b) {
                 let held = holds(operation, x, y, bounds);
                 report.note(held, || {
                     format!("{operation:?} of {x:e}, {y:e} is not in {bounds:?}")

@@ -2,7 +2,7 @@
 
 use astro_float::{BigFloat, Consts, RoundingMode};
 use etalon::Instructions;
-use etalon_doors::intervals::{self, Bounds, Function};
+use etalon_doors::intervals::{self, Bounds, Function, same_bits};
 
 use super::arithmetic::Report;
 use super::random::Source;
@@ -81,12 +81,10 @@ fn angle(constants: &mut Consts, y: f64, x: f64) -> Option<BigFloat> {
         return Some(upright.sub(&rest, p, NEAREST));
     }
     let rest = big(y).div(&big(x), p, NEAREST).atan(p, NEAREST, constants);
-    Some(if x > 0.0 {
-        rest
-    } else if y >= 0.0 {
-        rest.add(&pi, p, NEAREST)
-    } else {
-        rest.sub(&pi, p, NEAREST)
+    Some(match x > 0.0 {
+        true => rest,
+        false if y >= 0.0 => rest.add(&pi, p, NEAREST),
+        false => rest.sub(&pi, p, NEAREST),
     })
 }
 
@@ -125,14 +123,8 @@ fn operands(function: Function, source: &mut Source) -> [[f64; 2]; 2] {
     };
     let b = around(20.0);
     let sorted = |[a, b]: [f64; 2]| if a <= b { [a, b] } else { [b, a] };
-    let trigonometric = matches!(
-        function,
-        Function::Sine
-            | Function::Cosine
-            | Function::SineThin
-            | Function::CosineThin
-            | Function::Tangent
-    );
+    use Function::{Cosine, CosineThin, Sine, SineThin, Tangent};
+    let trigonometric = matches!(function, Sine | Cosine | SineThin | CosineThin | Tangent);
     if trigonometric && source.below(4) == 0 {
         // Near a multiple of π/2, up to the largest angle that is reduced and a little more.
         let bits = source.below(21);
@@ -154,27 +146,20 @@ fn points([low, high]: [f64; 2], source: &mut Source) -> [f64; 3] {
 pub fn check(function: Function, seed: u64, count: usize, narrowed: bool) -> Option<Report> {
     let mut reference = Reference::new()?;
     let mut source = Source::new(seed);
-    let (mut a, mut b) = (Bounds::default(), Bounds::default());
-    for _ in 0..count {
-        let [first, second] = operands(function, &mut source);
-        a.push(first);
-        b.push(second);
-    }
+    let pairs = (0..count).map(|_| <(Bounds, Bounds)>::from(operands(function, &mut source)));
+    let (a, b): (Vec<_>, Vec<_>) = pairs.unzip();
     let results = Instructions::all().into_iter();
     let results = results.map(|set| intervals::function(set, function, [&a, &b]));
     let ((first, broken), mut report) =
-        Report::of(results, |a, b| a.0.same_bits(&b.0) && a.1 == b.1);
-    for (i, broken) in broken.iter().enumerate() {
-        let mut bounds = first.at(i);
-        if narrowed {
-            bounds = narrower(bounds);
-        }
-        let seconds = points(b.at(i), &mut source);
-        for (x, y) in points(a.at(i), &mut source).into_iter().zip(seconds) {
+        Report::of(results, |a, b| same_bits(&a.0, &b.0) && a.1 == b.1);
+    for (((a, b), bounds), broken) in a.into_iter().zip(b).zip(first).zip(broken) {
+        let bounds = if narrowed { narrower(bounds) } else { bounds };
+        let seconds = points(b, &mut source);
+        for (x, y) in points(a, &mut source).into_iter().zip(seconds) {
             let good = match reference.value(function, x, y) {
                 Some(value) => holds(&value, bounds),
                 // The whole line and a note are all that a point outside the domain asks for.
-                None => *broken || !notes(function),
+                None => broken || !notes(function),
             };
             report.note(good, || {
                 format!("{function:?} at {x:e}, {y:e} is not in {bounds:?}")

@@ -5,7 +5,7 @@ use plotters::prelude::*;
 
 use super::families::{FAMILIES, Family};
 use super::{Method, Point, SUBJECTS, Subject};
-use crate::finders::chart::{Area, ChartError, Outcome, failed};
+use crate::finders::chart::{Area, ChartError, Outcome};
 use crate::finders::{Precision, Score};
 use etalon::inside::scene::FinderChoice;
 
@@ -47,7 +47,7 @@ pub fn svg(points: &[Point]) -> Result<String, ChartError> {
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-        root.fill(&WHITE).map_err(failed)?;
+        root.fill(&WHITE)?;
         let (top, below) = root.split_vertically(HEADER);
         legend(&top)?;
         let (names, panels) = below.split_horizontally(NAMES);
@@ -56,16 +56,14 @@ pub fn svg(points: &[Point]) -> Result<String, ChartError> {
         for (i, title) in titles.enumerate() {
             let width = (SIZE.0 - NAMES) as usize / columns;
             let place = ((NAMES as usize + i * width + 14) as i32, HEADER as i32 - 26);
-            top.draw(&Text::new(title, place, FONT)).map_err(failed)?;
+            top.draw(&Text::new(title, place, FONT))?;
         }
         let names = names.split_evenly((SUBJECTS.len(), 1));
         let panels = panels.split_evenly((SUBJECTS.len(), columns));
         for (row, subject) in SUBJECTS.into_iter().enumerate() {
             let own: Vec<&Point> = points.iter().filter(|p| p.subject == subject).collect();
             let cells = &panels[row * columns..];
-            names[row]
-                .draw(&Text::new(subject.name(), (8, 50), FONT))
-                .map_err(failed)?;
+            names[row].draw(&Text::new(subject.name(), (8, 50), FONT))?;
             for (family, cell) in FAMILIES.into_iter().zip(cells) {
                 let of_family = own.iter().filter(|p| p.family == family);
                 shares(
@@ -77,7 +75,7 @@ pub fn svg(points: &[Point]) -> Result<String, ChartError> {
             }
             times(&cells[FAMILIES.len()], subject, &own)?;
         }
-        root.present().map_err(failed)?;
+        root.present()?;
     }
     Ok(text)
 }
@@ -90,8 +88,7 @@ fn shares(area: &Area, subject: Subject, family: Family, points: &[&Point]) -> O
         .margin(4)
         .x_label_area_size(24)
         .y_label_area_size(46)
-        .build_cartesian_2d(-0.3..last + 0.3, -0.05f64..1.05)
-        .map_err(failed)?;
+        .build_cartesian_2d(-0.3..last + 0.3, -0.05f64..1.05)?;
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
@@ -100,8 +97,7 @@ fn shares(area: &Area, subject: Subject, family: Family, points: &[&Point]) -> O
         .x_label_formatter(&|x| {
             let exponent = exponents
                 .get(x.round() as usize)
-                .copied()
-                .unwrap_or_default();
+                .map_or(0, |exponent| *exponent);
             if exponent % 3 == 0 && (x - x.round()).abs() < 0.1 {
                 format!("1e{exponent}")
             } else {
@@ -110,8 +106,7 @@ fn shares(area: &Area, subject: Subject, family: Family, points: &[&Point]) -> O
         })
         .y_label_formatter(&|y| format!("{:.0} %", 100.0 * y))
         .label_style(SMALL)
-        .draw()
-        .map_err(failed)?;
+        .draw()?;
     for method in subject.methods() {
         let own = points.iter().filter(|p| p.method == *method);
         let place = |p: &Point| {
@@ -124,14 +119,10 @@ fn shares(area: &Area, subject: Subject, family: Family, points: &[&Point]) -> O
         };
         let (wrong, undecided) = (line(Score::wrong_share), line(Score::undecided_share));
         let style = colour(*method).stroke_width(if method.is_planned() { 3 } else { 2 });
-        chart
-            .draw_series(LineSeries::new(wrong, style))
-            .map_err(failed)?;
+        chart.draw_series(LineSeries::new(wrong, style))?;
         if undecided.iter().any(|(_, share)| *share > 0.0) {
             let thin = colour(*method).stroke_width(1);
-            chart
-                .draw_series(DashedLineSeries::new(undecided, 4, 3, thin))
-                .map_err(failed)?;
+            chart.draw_series(DashedLineSeries::new(undecided, 4, 3, thin))?;
         }
     }
     planned_single(&mut chart, points, &exponents)
@@ -151,8 +142,8 @@ fn planned_single(chart: &mut Chart, points: &[&Point], exponents: &[i32]) -> Ou
         let at = exponents.iter().position(|e| *e == p.exponent)? as f64;
         Some(Circle::new((at, 0.0), 4, BLACK.filled()))
     });
-    let marks: Vec<_> = marks.collect();
-    chart.draw_series(marks).map_err(failed).map(|_| ())
+    chart.draw_series(marks.collect::<Vec<_>>())?;
+    Ok(())
 }
 
 /// Nanoseconds a ray by method: least, median and most over all points.
@@ -163,8 +154,7 @@ fn times(area: &Area, subject: Subject, points: &[&Point]) -> Outcome {
         .margin(4)
         .x_label_area_size(24)
         .y_label_area_size(10)
-        .build_cartesian_2d((5f64..2e6).log_scale(), 0.0..rows)
-        .map_err(failed)?;
+        .build_cartesian_2d((5f64..2e6).log_scale(), 0.0..rows)?;
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
@@ -173,8 +163,7 @@ fn times(area: &Area, subject: Subject, points: &[&Point]) -> Outcome {
         .x_labels(6)
         .x_label_formatter(&|x| format!("1e{:.0}", x.log10()))
         .label_style(SMALL)
-        .draw()
-        .map_err(failed)?;
+        .draw()?;
     for (i, method) in methods.iter().enumerate() {
         let own = points
             .iter()
@@ -187,9 +176,9 @@ fn times(area: &Area, subject: Subject, points: &[&Point]) -> Outcome {
         let y = rows - 0.5 - i as f64;
         let shade = colour(*method);
         let line = PathElement::new(vec![(least, y), (most, y)], shade.stroke_width(2));
-        chart.draw_series([line]).map_err(failed)?;
+        chart.draw_series([line])?;
         let median = Circle::new((each[each.len() / 2], y), 4, shade.filled());
-        chart.draw_series([median]).map_err(failed)?;
+        chart.draw_series([median])?;
     }
     Ok(())
 }
@@ -216,13 +205,11 @@ fn legend(area: &Area) -> Outcome {
         area.draw(&PathElement::new(
             vec![(x, 18), (x + 24, 18)],
             shade.stroke_width(4),
-        ))
-        .map_err(failed)?;
-        area.draw(&Text::new(text, (x + 30, 8), FONT))
-            .map_err(failed)?;
+        ))?;
+        area.draw(&Text::new(text, (x + 30, 8), FONT))?;
         x += 54 + 10 * text.len() as i32;
     }
     let note = "share of rays, harder to the right: solid wrong, dashed undecided; times: least, median (dot) \
                 and most of a row's points";
-    area.draw(&Text::new(note, (20, 38), FONT)).map_err(failed)
+    Ok(area.draw(&Text::new(note, (20, 38), FONT))?)
 }

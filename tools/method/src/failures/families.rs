@@ -7,6 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use super::Subject;
+use super::textbook::{affine, inverse};
 use crate::finders::implicit;
 use etalon::inside::field::evaluate::Field;
 use etalon::inside::field::expression::{Expression, parse};
@@ -118,31 +119,16 @@ fn rotation(random: &mut Pcg64Mcg) -> DMat3 {
     ))
 }
 
-fn affine(m: DMat3, shift: DVec3) -> Affine {
-    let row = |i: usize| {
-        let row = m.row(i);
-        [row.x, row.y, row.z, shift[i]]
-    };
-    Affine {
-        rows: [row(0), row(1), row(2)],
-    }
-}
-
 /// The placing matrix of a family at a difficulty.
 fn placing(family: Family, difficulty: f64, random: &mut Pcg64Mcg) -> Affine {
     let shift = unit(random) * 0.3;
     let squeezed = |x: f64| DMat3::from_diagonal(DVec3::new(1.0, x.sqrt(), x));
-    match family {
-        Family::Condition => {
-            let m = rotation(random) * squeezed(1.0 / difficulty) * rotation(random);
-            affine(m, shift)
-        }
-        Family::Aspect => affine(
-            DMat3::from_diagonal(DVec3::new(1.0, 1.0, 1.0 / difficulty)),
-            shift,
-        ),
-        _ => affine(rotation(random), shift),
-    }
+    let linear = match family {
+        Family::Condition => rotation(random) * squeezed(1.0 / difficulty) * rotation(random),
+        Family::Aspect => DMat3::from_diagonal(DVec3::new(1.0, 1.0, 1.0 / difficulty)),
+        _ => rotation(random),
+    };
+    affine(linear, shift)
 }
 
 /// A point of a canonical shape's silhouette, its outward direction, and that of a line that touches
@@ -150,6 +136,8 @@ fn placing(family: Family, difficulty: f64, random: &mut Pcg64Mcg) -> Affine {
 fn touching(kind: ShapeKind, random: &mut Pcg64Mcg) -> [DVec3; 3] {
     let angle: f64 = random.random_range(0.0..std::f64::consts::TAU);
     let (sine, cosine) = (libm::sin(angle), libm::cos(angle));
+    let radial = DVec3::new(cosine, sine, 0.0);
+    let across = DVec3::new(-sine, cosine, 0.0);
     let along: f64 = random.random_range(-0.9..0.9);
     let mixed = |a: DVec3, b: DVec3, random: &mut Pcg64Mcg| {
         let turn: f64 = random.random_range(0.2..1.3);
@@ -166,30 +154,20 @@ fn touching(kind: ShapeKind, random: &mut Pcg64Mcg) -> [DVec3; 3] {
             [DVec3::new(1.0, 1.0, along), n, line]
         }
         ShapeKind::Cylinder if random.random_bool(0.5) => {
-            let n = DVec3::new(cosine, sine, 0.0);
-            let line = mixed(DVec3::new(-sine, cosine, 0.0), DVec3::Z, random);
-            [n + DVec3::Z * along, n, line]
+            let line = mixed(across, DVec3::Z, random);
+            [radial + DVec3::Z * along, radial, line]
         }
         ShapeKind::Cylinder => {
-            let radial = DVec3::new(cosine, sine, 0.0);
-            let across = DVec3::new(-sine, cosine, 0.0);
             let line = mixed(across, (radial - DVec3::Z).normalize(), random);
             [radial + DVec3::Z, (radial + DVec3::Z).normalize(), line]
         }
-        ShapeKind::Disk => {
-            let n = DVec3::new(cosine, sine, 0.0);
-            let line = mixed(DVec3::Z, DVec3::new(-sine, cosine, 0.0), random);
-            [n, n, line]
-        }
+        ShapeKind::Disk => [radial, radial, mixed(DVec3::Z, across, random)],
         ShapeKind::Rectangle => {
             let line = mixed(DVec3::Z, DVec3::Y, random);
             [DVec3::new(1.0, along, 0.0), DVec3::X, line]
         }
         // It has no silhouette but the horizon.
-        ShapeKind::Plane => {
-            let line = DVec3::new(cosine, sine, 0.0);
-            [line * along, DVec3::Z, line]
-        }
+        ShapeKind::Plane => [radial * along, DVec3::Z, radial],
     }
 }
 
@@ -260,17 +238,14 @@ impl Problem {
                 }
                 [p + n * (side * difficulty * half) - line * back, line]
             }
-            Family::Distance => {
-                let direction = unit(random);
-                [
-                    inside(random) - direction * (difficulty * half + 2.0 * half),
-                    direction,
-                ]
-            }
             Family::Gap => self.between(subject, difficulty, random),
-            Family::Condition | Family::Aspect => {
+            Family::Distance | Family::Condition | Family::Aspect => {
+                let far = match family {
+                    Family::Distance => difficulty * half + 2.0 * half,
+                    _ => 3.0 * half,
+                };
                 let direction = unit(random);
-                [inside(random) - direction * (3.0 * half), direction]
+                [inside(random) - direction * far, direction]
             }
         }
     }
@@ -315,7 +290,8 @@ fn bodies(
     gap: Option<f64>,
     model: Option<&Model>,
 ) -> Option<Vec<Body>> {
-    if let Some(model) = model {
+    let Subject::Canonical(kind) = subject else {
+        let model = model?;
         let implicit = implicit(&model.expression, model.half);
         let ladder = Ladder::new(to_world).ok()?;
         let certified = Certified::new(&implicit.field.tape, implicit.inside, &ladder)?;
@@ -325,22 +301,17 @@ fn bodies(
             implicit: Some(implicit),
             certified: Some(certified),
         }]);
-    }
-    let kind = match subject {
-        Subject::Canonical(kind) => Some(kind),
-        Subject::Implicit(_) => None,
     };
     let plain = |to_world: Affine| Body {
         to_world,
-        kind,
+        kind: Some(kind),
         implicit: None,
         certified: None,
     };
     let Some(gap) = gap else {
         return Some(vec![plain(*to_world)]);
     };
-    let flat = matches!(subject, Subject::Canonical(kind) if kind.is_flat());
-    let other = if flat {
+    let other = if kind.is_flat() {
         Affine::translate(DVec3::Z * gap)
     } else {
         Affine::scale(DVec3::splat(1.0 + gap))
@@ -373,7 +344,7 @@ impl Model {
     fn touching(&self, problem: &Problem, random: &mut Pcg64Mcg) -> [DVec3; 3] {
         let field = Field::new(&self.expression.tape);
         let body = &problem.bodies[0];
-        let inverse = super::textbook::inverse(&body.to_world);
+        let inverse = inverse(&body.to_world);
         loop {
             let direction = unit(random);
             let origin = unit(random) * (self.half * 0.7) - direction * (3.0 * self.half);

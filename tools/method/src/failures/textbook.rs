@@ -22,21 +22,17 @@ fn dot<T: Scalar>(a: &[T], b: &[T]) -> T {
         .fold(T::default(), |sum, (x, y)| sum + *x * *y)
 }
 
+/// The map of its linear part and its shift.
+pub fn affine(linear: DMat3, shift: DVec3) -> Affine {
+    let rows = [0, 1, 2].map(|i| linear.row(i).extend(shift[i]).to_array());
+    Affine { rows }
+}
+
 /// The inverse of a placing matrix by cofactors, in f64.
 pub fn inverse(to_world: &Affine) -> Affine {
-    let r = &to_world.rows;
-    let column = |j: usize| DVec3::new(r[0][j], r[1][j], r[2][j]);
-    let linear = DMat3::from_cols(column(0), column(1), column(2)).inverse();
-    let shift = -(linear * column(3));
-    let rows = linear.transpose();
-    Affine {
-        rows: [
-            (rows.x_axis, shift.x),
-            (rows.y_axis, shift.y),
-            (rows.z_axis, shift.z),
-        ]
-        .map(|(row, shift)| [row.x, row.y, row.z, shift]),
-    }
+    let [a, b, c] = to_world.columns();
+    let linear = DMat3::from_cols(a, b, c).inverse();
+    affine(linear, -(linear * to_world.translation()))
 }
 
 /// A world ray in object coordinates, by a rounded map.

@@ -1,6 +1,7 @@
 //! The results as CSV and as a picture: share wrong and share undecided over time a ray.
 
 use plotters::coord::Shift;
+use plotters::drawing::DrawingAreaErrorKind;
 use plotters::prelude::*;
 
 use super::{CLASSES, Contestant, Precision, Result, Score};
@@ -31,14 +32,14 @@ pub fn csv(results: &[Result]) -> String {
     text
 }
 
-/// The chart could not be drawn.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the chart cannot be drawn: {0}")]
 pub struct ChartError(String);
 
-/// Any error of the drawing crate.
-pub(crate) fn failed(error: impl ToString) -> ChartError {
-    ChartError(error.to_string())
+impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for ChartError {
+    fn from(error: DrawingAreaErrorKind<E>) -> Self {
+        Self(error.to_string())
+    }
 }
 
 /// Where shares of zero are drawn: below any share that the rays of a class can have.
@@ -53,7 +54,7 @@ pub fn svg(results: &[Result]) -> std::result::Result<String, ChartError> {
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-        root.fill(&WHITE).map_err(failed)?;
+        root.fill(&WHITE)?;
         let (top, bottom) = root.split_vertically(740);
         let panels = top.split_evenly((2, 4));
         for (i, panel) in panels.iter().enumerate() {
@@ -65,7 +66,7 @@ pub fn svg(results: &[Result]) -> std::result::Result<String, ChartError> {
             draw(panel, title, &scores.collect::<Vec<_>>())?;
         }
         legend(&bottom)?;
-        root.present().map_err(failed)?;
+        root.present()?;
     }
     Ok(text)
 }
@@ -80,8 +81,7 @@ fn draw(area: &Area, title: &str, scores: &[(Contestant, Score)]) -> Outcome {
         .margin(6)
         .x_label_area_size(36)
         .y_label_area_size(52)
-        .build_cartesian_2d((100f64..1e7).log_scale(), (1.5e-4f64..1.0).log_scale())
-        .map_err(failed)?;
+        .build_cartesian_2d((100f64..1e7).log_scale(), (1.5e-4f64..1.0).log_scale())?;
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
@@ -91,25 +91,22 @@ fn draw(area: &Area, title: &str, scores: &[(Contestant, Score)]) -> Outcome {
         .y_labels(5)
         .x_label_formatter(&|x| format!("1e{:.0}", x.log10()))
         .y_label_formatter(&|y| format!("{:.0e}", y))
-        .draw()
-        .map_err(failed)?;
+        .draw()?;
     for precision in Precision::ALL {
         let sweep = scores.iter().filter(
             |(contestant, _)| matches!(contestant, Contestant::SignChange(p, _) if *p == precision),
         );
         let line: Vec<(f64, f64)> = sweep.map(|(_, score)| point(score, false)).collect();
         let colour = colour("sign-change", precision);
-        chart
-            .draw_series(LineSeries::new(line, colour))
-            .map_err(failed)?;
+        chart.draw_series(LineSeries::new(line, colour))?;
     }
     for (contestant, score) in scores {
         let colour = colour(contestant.name(), contestant.precision());
         let wrong = Circle::new(point(score, false), 4, colour.filled());
-        chart.draw_series([wrong]).map_err(failed)?;
+        chart.draw_series([wrong])?;
         if score.undecided > 0 {
             let undecided = Circle::new(point(score, true), 6, colour.stroke_width(2));
-            chart.draw_series([undecided]).map_err(failed)?;
+            chart.draw_series([undecided])?;
         }
     }
     Ok(())
@@ -146,13 +143,10 @@ fn legend(area: &Area) -> Outcome {
     ];
     let mut x = 30;
     for (text, shade) in stepping.into_iter().chain(proved) {
-        area.draw(&Circle::new((x, 20), 5, shade.filled()))
-            .map_err(failed)?;
-        area.draw(&Text::new(text, (x + 10, 12), ("sans-serif", 15)))
-            .map_err(failed)?;
+        area.draw(&Circle::new((x, 20), 5, shade.filled()))?;
+        area.draw(&Text::new(text, (x + 10, 12), ("sans-serif", 15)))?;
         x += 40 + 8 * text.len() as i32;
     }
     let note = "filled: wrong, ring: undecided; at 2e-4: none";
-    area.draw(&Text::new(note, (x, 12), ("sans-serif", 15)))
-        .map_err(failed)
+    Ok(area.draw(&Text::new(note, (x, 12), ("sans-serif", 15)))?)
 }

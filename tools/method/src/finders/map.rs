@@ -3,7 +3,7 @@
 use glam::DVec3;
 use image::{Rgb, RgbImage};
 
-use super::{Answer, CONTESTANTS, Contestant, OracleShape};
+use super::{Answer, CONTESTANTS, Contestant, OracleShape, Score};
 use etalon::inside::scene::FinderChoice;
 use etalon::inside::shape::Ray;
 use etalon::inside::shape::implicit::certified::Workspace;
@@ -18,27 +18,18 @@ const FRAME: u32 = 4;
 /// Pixels of the first look.
 const COARSE: u32 = 64;
 
-/// How many pixels of a finder's map are what.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct MapCount {
-    pub contestant: Contestant,
-    pub wrong: u32,
-    pub undecided: u32,
-}
-
-/// Paints the maps side by side, each `size` pixels wide and high, with the counts; `None` where
-/// the surface cannot be placed.
+/// Paints the maps side by side, each `size` pixels wide and high, with the wrong and undecided pixels
+/// of each finder; `None` where the surface cannot be placed.
 ///
 /// The camera looks along parallel rays from (2, −3, 1) at the surface within its clip cube. The
 /// truth is that of `auto`.
-pub fn map(shape: &OracleShape, size: u32) -> Option<(RgbImage, Vec<MapCount>)> {
+pub fn map(shape: &OracleShape, size: u32) -> Option<(RgbImage, Vec<(Contestant, Score)>)> {
     let truth_finder = Contestant::Proved(FinderChoice::Auto).ready(shape)?;
     let mut workspace = Workspace::default();
     let mut look = |reach: f64, size: u32| -> (Vec<Ray>, Vec<Answer>) {
         let rays = rays(shape.half_width, reach, size);
-        let answers = rays.iter();
-        let answers = answers.map(|ray| truth_finder.first_hit(ray, 0.0, &mut workspace));
-        let answers = answers.collect();
+        let answer = |ray: &Ray| truth_finder.first_hit(ray, 0.0, &mut workspace);
+        let answers = rays.iter().map(answer).collect();
         (rays, answers)
     };
     // A first look at the whole cube tells how large the surface is in the picture.
@@ -52,11 +43,7 @@ pub fn map(shape: &OracleShape, size: u32) -> Option<(RgbImage, Vec<MapCount>)> 
     let mut counts = Vec::new();
     for (place, contestant) in (0..).zip(CONTESTANTS) {
         let ready = contestant.ready(shape)?;
-        let mut tally = MapCount {
-            contestant,
-            wrong: 0,
-            undecided: 0,
-        };
+        let mut tally = Score::default();
         let corner = [place % columns * step, place / columns * step];
         for (i, (ray, truth)) in (0..).zip(rays.iter().zip(&truth)) {
             let answer = ready.first_hit(ray, 0.0, &mut workspace);
@@ -65,7 +52,7 @@ pub fn map(shape: &OracleShape, size: u32) -> Option<(RgbImage, Vec<MapCount>)> 
             tally.undecided += u32::from(colour == UNDECIDED);
             picture.put_pixel(corner[0] + i % size, corner[1] + i / size, colour);
         }
-        counts.push(tally);
+        counts.push((contestant, tally));
     }
     Some((picture, counts))
 }
@@ -85,17 +72,11 @@ fn judged(answer: Answer, truth: Answer, half_width: f64) -> Rgb<u8> {
 fn filled(coarse: &[Answer]) -> f64 {
     let half = f64::from(COARSE) / 2.0;
     let distance = |i: u32| (f64::from(i) + 0.5 - half).abs();
-    let hits = (0..)
-        .zip(coarse)
-        .filter(|(_, answer)| matches!(answer, Answer::Hit(_)));
-    let farthest = hits
-        .map(|(i, _)| distance(i % COARSE).max(distance(i / COARSE)))
-        .fold(0.0, f64::max);
-    if farthest > 0.0 {
-        ((farthest + 2.0) / half).min(1.0)
-    } else {
-        1.0
-    }
+    let pixels = (0..).zip(coarse);
+    let hits = pixels.filter(|(_, answer)| matches!(answer, Answer::Hit(_)));
+    let distances = hits.map(|(i, _)| distance(i % COARSE).max(distance(i / COARSE)));
+    let farthest = distances.reduce(f64::max);
+    farthest.map_or(1.0, |farthest| ((farthest + 2.0) / half).min(1.0))
 }
 
 /// Parallel rays through the pixels, row by row from the top; `reach` is the half width of the
@@ -112,8 +93,5 @@ fn rays(half_width: f64, reach: f64, size: u32) -> Vec<Ray> {
         origin: reach * (right * pixel(x) - up * pixel(y)) - 2.0 * diagonal * forward,
         direction: forward,
     };
-    (0..size)
-        .flat_map(|y| (0..size).map(move |x| (x, y)))
-        .map(|(x, y)| ray(x, y))
-        .collect()
+    (0..size * size).map(|i| ray(i % size, i / size)).collect()
 }

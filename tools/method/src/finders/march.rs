@@ -2,30 +2,25 @@
 
 use std::cell::RefCell;
 
-use num_rational::BigRational;
-
 use super::Answer;
-use etalon::inside::field::evaluate::{binary, nearest, unary};
-use etalon::inside::field::tape::{Algebra, Binary, Tape, Unary};
-use etalon::inside::math::lanes::Scalar;
+use etalon::inside::field::evaluate::Field;
+use etalon::inside::field::tape::Tape;
+use etalon::inside::math::lanes::{Lanes, Scalar};
+use etalon::inside::math::vec3::Vec3;
 use etalon::inside::root::sign_change::first_change;
 use etalon::inside::shape::Ray;
 
-pub struct March<T> {
-    tape: Tape,
-    constants: Vec<T>,
+pub struct March<T: Scalar> {
+    field: Field<T>,
     half_width: T,
     steps: u32,
-    results: RefCell<Vec<T>>,
+    results: RefCell<Vec<[<T::One as Lanes>::Real; 1]>>,
 }
 
 impl<T: Scalar> March<T> {
-    /// Rounds what is constant.
     pub fn new(tape: &Tape, half_width: f64, steps: u32) -> Self {
-        let constants = tape.constants().iter();
         Self {
-            constants: constants.map(|c| T::from_f64(nearest(c))).collect(),
-            tape: tape.clone(),
+            field: Field::new(tape),
             half_width: T::from_f64(half_width),
             steps,
             results: RefCell::default(),
@@ -40,14 +35,11 @@ impl<T: Scalar> March<T> {
             return Answer::Miss;
         };
         let value = |t: T| {
-            let point = std::array::from_fn(|i| origin[i] + direction[i] * t);
-            let numbers = Numbers {
-                constants: &self.constants,
-                point,
-            };
+            let l = T::ONE;
+            let [x, y, z] = [0, 1, 2].map(|i| l.splat(origin[i] + direction[i] * t));
             let mut results = self.results.borrow_mut();
-            let value = self.tape.evaluate(&numbers, &mut results);
-            value.unwrap_or_default()
+            let [value] = self.field.values(l, [Vec3::new(x, y, z)], &mut results);
+            l.lane(value, 0)
         };
         let middle = |[low, high]: [T; 2]| low + (high - low) * T::from_f64(0.5);
         let t = first_change(value, [near, far], self.steps).map(middle);
@@ -71,54 +63,5 @@ impl<T: Scalar> March<T> {
             far = if leave < far { leave } else { far };
         }
         (near <= far).then_some([near, far])
-    }
-}
-
-/// Arithmetic at a point.
-struct Numbers<'a, T> {
-    constants: &'a [T],
-    point: [T; 3],
-}
-
-impl<T: Scalar> Algebra for Numbers<'_, T> {
-    type Value = T;
-
-    fn coordinate(&self, axis: usize) -> T {
-        self.point[axis]
-    }
-
-    fn constant(&self, index: usize, _: &BigRational) -> T {
-        self.constants[index]
-    }
-
-    fn unary(&self, function: Unary, a: &T) -> T {
-        match function {
-            Unary::Negative => T::default() - *a,
-            Unary::SquareRoot => a.root(),
-            _ => T::from_f64(unary(function, a.to_f64())),
-        }
-    }
-
-    fn binary(&self, function: Binary, a: &T, b: &T) -> T {
-        match function {
-            Binary::Sum => *a + *b,
-            Binary::Difference => *a - *b,
-            Binary::Product => *a * *b,
-            Binary::Quotient => *a / *b,
-            _ => T::from_f64(binary(function, a.to_f64(), b.to_f64())),
-        }
-    }
-
-    fn whole_power(&self, a: &T, n: i32) -> T {
-        let one = T::from_f64(1.0);
-        let (mut power, mut square, mut left) = (one, *a, n.unsigned_abs());
-        while left > 0 {
-            if left % 2 == 1 {
-                power = power * square;
-            }
-            square = square * square;
-            left /= 2;
-        }
-        if n < 0 { one / power } else { power }
     }
 }

@@ -34,7 +34,6 @@ pub const CLASSES: [&str; 7] = [
     "far",
 ];
 
-/// A finder that takes part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Contestant {
     /// Equal steps and bisection.
@@ -210,9 +209,8 @@ pub struct Result {
 
 impl Result {
     pub fn all(&self) -> Score {
-        self.scores
-            .iter()
-            .fold(Score::default(), |a, b| a.joined(*b))
+        let scores = self.scores.into_iter();
+        scores.fold(Score::default(), Score::joined)
     }
 }
 

@@ -12,7 +12,6 @@ use etalon::inside::shape::Ray;
 const RAYS: &str = include_str!("../../../../tests/data/implicit.csv");
 const SHAPES: &str = include_str!("../../../../tests/data/implicit_shapes.csv");
 
-/// Why a set of rays cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OracleError {
     #[error("the heading has no column \"{0}\"")]
@@ -83,7 +82,6 @@ impl Oracle {
             .filter(move |ray| ray.shape == shape && ray.class == class)
     }
 
-    /// The surface of that name.
     pub fn shape(&self, name: &str) -> Option<&OracleShape> {
         self.shapes.iter().find(|shape| shape.name == name)
     }
