@@ -1,4 +1,4 @@
-//! What a material is and does, and the list of them.
+//! What a material is and does.
 
 use glam::DVec3;
 
@@ -104,7 +104,7 @@ pub trait MaterialJob {
     fn run<M: Material>(self) -> Self::Output;
 }
 
-macro_rules! materials {
+macro_rules! define {
     ($($(#[$attribute:meta])? $kind:ident in $module:ident,)*) => {
         kinds! {
             MaterialKind of Material {
@@ -144,16 +144,7 @@ macro_rules! materials {
     };
 }
 
-materials! {
-    Diffuse in diffuse,
-    Conductor in conductor,
-    Mirror in mirror,
-    Glass in glass,
-    Checkerboard in checkerboard,
-    Black in black,
-    #[cfg(feature = "planted")]
-    Phong in phong,
-}
+materials!(define);
 
 impl MaterialKind {
     /// [`Material::run`].

@@ -4,6 +4,22 @@
 //! weigh? *Evaluate*: how much goes from one given direction to another? Geometry is asked for a
 //! packet of lanes at once; spectra have C values a lane, and are handed over lane by lane.
 
+/// The materials: what stands here is read from scene files, planned, rendered and tested.
+macro_rules! materials {
+    ($define:ident) => {
+        $define! {
+            Diffuse in diffuse,
+            Conductor in conductor,
+            Mirror in mirror,
+            Glass in glass,
+            Checkerboard in checkerboard,
+            Black in black,
+            #[cfg(feature = "planted")]
+            Phong in phong,
+        }
+    };
+}
+
 pub mod black;
 pub mod checkerboard;
 pub mod conductor;

@@ -1,4 +1,4 @@
-//! What a sampler is and draws, and the list of them.
+//! What a sampler is and draws.
 
 use super::Slot;
 use super::sequence::{Identity, Sequence};
@@ -51,16 +51,19 @@ pub trait Sampler {
     }
 }
 
-kinds! {
-    SamplerKind of Sampler {
-        Sobol in sobol,
-        Independent in independent,
-        Stratified in stratified,
-        Center in center,
-    }
-    fn name(self) -> &'static str = NAME;
-    fn words(self) -> &'static str = WORDS;
-    fn needs_count(self) -> bool = NEEDS_COUNT;
-    fn is_centred(self) -> bool = CENTRED;
+macro_rules! define {
+    ($($kind:ident in $module:ident,)*) => {
+        kinds! {
+            SamplerKind of Sampler {
+                $($kind in $module,)*
+            }
+            fn name(self) -> &'static str = NAME;
+            fn words(self) -> &'static str = WORDS;
+            fn needs_count(self) -> bool = NEEDS_COUNT;
+            fn is_centred(self) -> bool = CENTRED;
+        }
+    };
 }
+
+samplers!(define);
 pub(super) use of;

@@ -4,6 +4,18 @@
 //! of those and of the *name* of the dimension ([`Slot`]), so a sample can be computed alone, in
 //! any order, and leaving a dimension out moves no other.
 
+/// The samplers: what stands here is read from scene files, planned and tested.
+macro_rules! samplers {
+    ($define:ident) => {
+        $define! {
+            Sobol in sobol,
+            Independent in independent,
+            Stratified in stratified,
+            Center in center,
+        }
+    };
+}
+
 pub mod center;
 pub mod hash;
 pub mod independent;
