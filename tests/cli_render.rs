@@ -97,7 +97,7 @@ fn a_picture_says_where_it_comes_from() {
     assert_eq!(attribute(&picture, "sampler"), "sobol");
     let plan = attribute(&picture, "plan");
     assert!(plan.contains("all but one end where it is refracted by ball"));
-    assert!(attribute(&picture, "rungs").contains("decided in lanes of"));
+    assert!(attribute(&picture, "tiers").contains("decided in lanes of"));
     let cut = "cut off by max_depth";
     assert_says(&said, &["24 spp in ", "samples/s", " ± ", cut, "0 NaN"]);
     assert!(folder.files().contains("out.png"));

@@ -1,4 +1,4 @@
-//! Soundness of the first rung: what lanes call certain must be what the certified ladder says of
+//! Soundness of the first tier: what lanes call certain must be what the certified ladder says of
 //! the very same rounded ray, and both crossings must lie within the stated error.
 
 use etalon::Instructions;

@@ -101,8 +101,8 @@ fn rays_along_the_axes_ask_the_index_too() {
 fn questions_a_ray(objects: usize) -> f64 {
     let scene = cloud(objects, usize::MAX);
     let plan = Plan::new(&scene, false).unwrap();
-    let rungs = rendered(&scene, &plan).rungs;
-    rungs.implicit.rays() as f64 / rungs.rays as f64
+    let tiers = rendered(&scene, &plan).tiers;
+    tiers.implicit.rays() as f64 / tiers.rays as f64
 }
 
 /// A list asks 64 of 64 and 1 000 of 1 000. In a cloud of constant total cross-section a line runs

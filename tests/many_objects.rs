@@ -190,7 +190,7 @@ fn turned(ray: &Ray, t: f64) -> Ray {
     }
 }
 
-/// Both rungs are the same arithmetic on the same rays by either way. Only what stands for a rival
+/// Both tiers are the same arithmetic on the same rays by either way. Only what stands for a rival
 /// could differ: an object whose box lies beyond a hit that its enclosure reaches before. No ray
 /// here meets one, so that all bits agree.
 #[test]

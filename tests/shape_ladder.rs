@@ -1,4 +1,4 @@
-//! Every rung of the ladder against the exact one, on rays made to be nasty; odd input.
+//! Every tier of the ladder against the exact one, on rays made to be nasty; odd input.
 
 use std::cmp::Ordering;
 
@@ -142,8 +142,8 @@ impl Decided {
         assert!(truth.is_some(), "exact numbers must decide: {what}");
         let double = question.ask(&ladder.double.local(ray));
         let double_double = question.ask(&ladder.double_double.local(ray));
-        for (rung, answer) in [("f64", &double), ("double-double", &double_double)] {
-            assert!(answer.is_none() || *answer == truth, "{rung}: {what}");
+        for (tier, answer) in [("f64", &double), ("double-double", &double_double)] {
+            assert!(answer.is_none() || *answer == truth, "{tier}: {what}");
         }
         self.asked += 1;
         self.double += usize::from(double.is_some());
@@ -152,7 +152,7 @@ impl Decided {
 }
 
 #[test]
-fn lower_rungs_never_contradict_the_exact_one() {
+fn lower_tiers_never_contradict_the_exact_one() {
     let mut rng = Pcg64Mcg::seed_from_u64(0x001a_dde5);
     let mut decided = Decided::default();
     for round in 0..12_000 {
@@ -184,7 +184,7 @@ fn lower_rungs_never_contradict_the_exact_one() {
         }
     }
     println!("{decided:?}");
-    // The test has teeth only if every rung is reached and left often, and both answers occur.
+    // The test has teeth only if every tier is reached and left often, and both answers occur.
     let [asked, double, double_double] = [decided.asked, decided.double, decided.double_double];
     assert!(double > asked / 10 && double_double > double + asked / 10);
     assert!(double_double < asked - asked / 20 && decided.hits > 2_000);

@@ -7,7 +7,7 @@ use super::layers;
 use super::session::Rendered;
 use super::trace::Singular;
 use crate::film::{Attribute, Channel, Picture, hash, names};
-use crate::integrate::intersect::Rungs;
+use crate::integrate::intersect::Tiers;
 use crate::plan::choose::Precision;
 
 impl Render {
@@ -72,7 +72,7 @@ impl Render {
             lights if lights.is_empty() => "none".to_owned(),
             lights => lights,
         };
-        let rungs = rungs(&rendered.rungs, plan.choices.precision);
+        let tiers = tiers(&rendered.tiers, plan.choices.precision);
         let attributes = [
             ("etalonVersion", text(env!("CARGO_PKG_VERSION"))),
             ("sceneFile", text(&source.path)),
@@ -89,7 +89,7 @@ impl Render {
             ("wavelengths", count(plan.choices.wavelengths.into())),
             ("instructions", text(self.instructions.name())),
             ("plan", text(&self.explain().join("\n"))),
-            ("rungs", text(&rungs)),
+            ("tiers", text(&tiers)),
             ("maxDepth", depth),
             ("crop", crop.as_deref().and_then(text)),
             (
@@ -110,7 +110,7 @@ impl Render {
 }
 
 /// Shares of rays and questions that each arithmetic has decided.
-fn rungs(rungs: &Rungs, precision: Precision) -> String {
+fn tiers(tiers: &Tiers, precision: Precision) -> String {
     let share = |part: u64, whole: u64| part as f64 / whole.max(1) as f64;
     let decided = |parts: [u64; 3], whole: u64| {
         let [double, double_double, exact] = parts.map(|part| share(part, whole));
@@ -118,19 +118,19 @@ fn rungs(rungs: &Rungs, precision: Precision) -> String {
             "{double:.9} decided in f64, {double_double:.9} in double-double, {exact:.9} exactly"
         )
     };
-    let ladder = rungs.ladder;
+    let ladder = tiers.ladder;
     let parts = [ladder.double, ladder.double_double, ladder.exact];
     let questions = parts.iter().sum();
     let mut text = format!(
         "{} rays: {:.9} decided in lanes of {}, {:.9} taken to the ladder; its {questions} \
          questions: {}",
-        rungs.rays,
-        share(rungs.rays - rungs.undecided.min(rungs.rays), rungs.rays),
+        tiers.rays,
+        share(tiers.rays - tiers.undecided.min(tiers.rays), tiers.rays),
         precision.name(),
-        share(rungs.undecided, rungs.rays),
+        share(tiers.undecided, tiers.rays),
         decided(parts, questions),
     );
-    let implicit = rungs.implicit;
+    let implicit = tiers.implicit;
     let rays = implicit.rays();
     if rays > 0 {
         let parts = [implicit.double, implicit.double_double, implicit.exact];

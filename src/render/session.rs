@@ -11,7 +11,7 @@ use crate::film::pixels;
 use crate::integrate::chunk;
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::dispatch::Runs;
-use crate::integrate::intersect::Rungs;
+use crate::integrate::intersect::Tiers;
 use crate::integrate::model::Model;
 use crate::math::instructions::Instructions;
 use crate::plan::{Plan, Tables};
@@ -62,7 +62,7 @@ pub struct Rendered {
     /// Wall-clock seconds of all passes.
     pub seconds: f64,
     /// Number of rays that each arithmetic decided.
-    pub rungs: Rungs,
+    pub tiers: Tiers,
     /// Samples left out because they were not numbers.
     pub not_a_number: u64,
     /// The first sample left out, to be replayed.
@@ -100,7 +100,7 @@ pub fn render(plan: &Plan, request: &Request, progress: &mut dyn Progress) -> Re
         window: request.window,
         samples: 0,
         seconds: 0.0,
-        rungs: Rungs::default(),
+        tiers: Tiers::default(),
         not_a_number: 0,
         first_not_a_number: None,
         luminance: Estimate::exact(f64::NAN),
@@ -123,7 +123,7 @@ pub fn render(plan: &Plan, request: &Request, progress: &mut dyn Progress) -> Re
         }
     }
     for tile in &rendered.tiles {
-        rendered.rungs = rendered.rungs.joined(tile.rungs);
+        rendered.tiers = rendered.tiers.joined(tile.tiers);
         rendered.not_a_number += tile.not_a_number;
         rendered.first_not_a_number = rendered.first_not_a_number.or(tile.first_not_a_number);
     }

@@ -8,7 +8,7 @@ use crate::film::pixels::{Pixels, is_finite};
 use crate::integrate::chunk::{self, CHUNK, Workspace};
 use crate::integrate::develop::Spectrometer;
 use crate::integrate::dispatch::Runs;
-use crate::integrate::intersect::Rungs;
+use crate::integrate::intersect::Tiers;
 use crate::integrate::model::Model;
 use crate::math::instructions::Instructions;
 use crate::math::lanes::Scalar;
@@ -108,7 +108,7 @@ pub struct Tile {
     /// Spectral sums of each pixel, where they are wanted.
     pub bins: Option<Bins>,
     /// Number of rays that each arithmetic decided.
-    pub rungs: Rungs,
+    pub tiers: Tiers,
     /// Sum and sum of squares of the luminance beyond `max_depth`, by sample.
     pub beyond: chunk::Beyond,
     /// Samples left out because they were not numbers.
@@ -124,7 +124,7 @@ impl Tile {
             window,
             pixels: Pixels::new(window.pixels(), replicates, samples),
             bins: None,
-            rungs: Rungs::default(),
+            tiers: Tiers::default(),
             beyond: chunk::Beyond::default(),
             not_a_number: 0,
             first_not_a_number: None,
@@ -145,7 +145,7 @@ impl Tile {
             requests,
             runs,
         } = worker;
-        workspace.rungs = Rungs::default();
+        workspace.tiers = Tiers::default();
         workspace.beyond = chunk::Beyond::default();
         let mut pixel = 0;
         let mut sample = from;
@@ -169,7 +169,7 @@ impl Tile {
             T::chunk(level, scene, requests, workspace);
             self.collect(runs, workspace);
         }
-        self.rungs = self.rungs.joined(workspace.rungs);
+        self.tiers = self.tiers.joined(workspace.tiers);
         self.beyond.sum += workspace.beyond.sum;
         self.beyond.squares += workspace.beyond.squares;
     }

@@ -2,7 +2,7 @@
 
 use etalon_lanes::integrate::bounce::bounce;
 use etalon_lanes::integrate::chunk::Workspace;
-use etalon_lanes::integrate::intersect::{NOTHING, Rays, Rungs, Shadow, nearest, occluded};
+use etalon_lanes::integrate::intersect::{NOTHING, Rays, Shadow, Tiers, nearest, occluded};
 use etalon_lanes::integrate::model::Model;
 use etalon_lanes::integrate::pool::{Paths, flags};
 use etalon_lanes::math::instructions::{Instructions, Job};
@@ -96,14 +96,14 @@ fn answered<L: Lanes>(
             inward: l.mask_from_bits(inward),
         };
         let active = l.mask_from_bits(u32::MAX >> (WIDEST - questions.len()));
-        let mut rungs = Rungs::default();
-        let found = nearest(l, model, &rays, active, &mut rungs);
+        let mut tiers = Tiers::default();
+        let found = nearest(l, model, &rays, active, &mut tiers);
         let shadow = Shadow {
             rays,
             limit: l.real(asking.limit),
             except: l.int(asking.except),
         };
-        let blocked = occluded(l, model, &shadow, active, &mut rungs).bits();
+        let blocked = occluded(l, model, &shadow, active, &mut tiers).bits();
         answers.extend((0..questions.len()).map(|i| {
             let part = l.int_lane(found.part, i);
             let entry = model.parts.entries.get(part as usize);

@@ -51,7 +51,7 @@ pub fn bounce<L: Lanes, const C: usize>(
     };
     let arrival = Arrival {
         rays: &rays,
-        nearest: nearest(l, model, &rays, active, &mut workspace.rungs),
+        nearest: nearest(l, model, &rays, active, &mut workspace.tiers),
         pdf: paths.pdf,
         specular: has(l, paths.flags, flags::SPECULAR),
     };

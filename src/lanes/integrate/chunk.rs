@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::bounce::bounce;
 use super::develop::Spectrometer;
-use super::intersect::{NOTHING, Rungs};
+use super::intersect::{NOTHING, Tiers};
 use super::model::Model;
 use super::pool::{Carried, POOL, Paths, Pool, Rows, WIDEST, flags};
 use super::replay::Vertex;
@@ -103,7 +103,7 @@ pub struct Workspace<T, const C: usize> {
     /// X, Y, Z by sample.
     pub tristimulus: Vec<[T; 3]>,
     /// Which arithmetic decided about rays.
-    pub rungs: Rungs,
+    pub tiers: Tiers,
     /// What `max_depth` cut off.
     pub beyond: Beyond,
     /// The vertices of a single request, where they are to be written down.
@@ -118,7 +118,7 @@ impl<T: Scalar, const C: usize> Default for Workspace<T, C> {
             beyond_slots: Vec::new(),
             values: [[T::default(); C]; WIDEST],
             tristimulus: Vec::new(),
-            rungs: Rungs::default(),
+            tiers: Tiers::default(),
             beyond: Beyond::default(),
             trace: None,
         }

@@ -212,8 +212,8 @@ impl<L: Lanes, const C: usize> Step<'_, L, C> {
     /// Where nothing stands between a surface and its light, of the lanes that ask.
     #[inline(always)]
     fn arrives(&mut self, l: L, shadow: &Shadow<L>, asked: L::Mask, weight: L::Real) -> L::Mask {
-        let rungs = &mut self.workspace.rungs;
-        let blocked = occluded(l, self.model, shadow, asked, rungs);
+        let tiers = &mut self.workspace.tiers;
+        let blocked = occluded(l, self.model, shadow, asked, tiers);
         if asked.bits() & 1 == 1
             && let Some(vertex) = self.vertex()
         {

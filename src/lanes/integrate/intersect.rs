@@ -20,7 +20,7 @@ pub const NOTHING: u32 = u32::MAX;
 
 /// How many rays each kind of arithmetic has decided.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Rungs {
+pub struct Tiers {
     pub rays: u64,
     /// Rays that lanes left undecided.
     pub undecided: u64,
@@ -30,7 +30,7 @@ pub struct Rungs {
     pub implicit: Tally,
 }
 
-impl Rungs {
+impl Tiers {
     pub fn joined(self, other: Self) -> Self {
         Self {
             rays: self.rays + other.rays,
@@ -226,12 +226,12 @@ impl<L: Lanes> Query<'_, L> {
         &self,
         unsure: L::Mask,
         limit: L::Real,
-        rungs: &mut Rungs,
+        tiers: &mut Tiers,
         mut decide: impl FnMut(usize, &UndecidedRay<'_>, &mut Tally),
     ) {
         let (l, rays) = (self.l, self.rays);
-        rungs.rays += u64::from(self.active.bits().count_ones());
-        rungs.undecided += u64::from(unsure.bits().count_ones());
+        tiers.rays += u64::from(self.active.bits().count_ones());
+        tiers.undecided += u64::from(unsure.bits().count_ones());
         for i in each(unsure.bits()) {
             let candidates = candidates(self, i, l.lane(limit, i));
             let doubt = UndecidedRay {
@@ -245,7 +245,7 @@ impl<L: Lanes> Query<'_, L> {
                     inward: rays.inward.bits() >> i & 1 == 1,
                 },
             };
-            decide(i, &doubt, &mut rungs.ladder);
+            decide(i, &doubt, &mut tiers.ladder);
         }
     }
 }
@@ -341,7 +341,7 @@ pub fn nearest<L: Lanes>(
     model: &Model<L::Scalar>,
     rays: &Rays<L>,
     active: L::Mask,
-    rungs: &mut Rungs,
+    tiers: &mut Tiers,
 ) -> Nearest<L> {
     l.vectorize(inlined!(|| {
         let query = Query {
@@ -352,7 +352,7 @@ pub fn nearest<L: Lanes>(
         };
         let mut search = match &model.hierarchy {
             None => list::search(&query),
-            Some(many) => many::search(&query, many, &mut rungs.implicit),
+            Some(many) => many::search(&query, many, &mut tiers.implicit),
         };
         let high = search.high;
         let mut best: Nearest<L> = Nearest {
@@ -363,7 +363,7 @@ pub fn nearest<L: Lanes>(
         query.resolve(
             unsure,
             high,
-            rungs,
+            tiers,
             #[inline(always)]
             |i, doubt, tally| {
                 let found = model.resolver.nearest(doubt, tally);
@@ -378,7 +378,7 @@ pub fn nearest<L: Lanes>(
         if model.hierarchy.is_none() {
             (search.field_t, search.field_part) = (best.t, best.part);
             for (object, implicit) in &model.implicits {
-                query.ask_field(&mut search, (*object, implicit), &mut rungs.implicit);
+                query.ask_field(&mut search, (*object, implicit), &mut tiers.implicit);
             }
         }
         let closer = search.field_t.lt(best.t);
@@ -466,7 +466,7 @@ pub fn occluded<L: Lanes>(
     model: &Model<L::Scalar>,
     shadow: &Shadow<L>,
     active: L::Mask,
-    rungs: &mut Rungs,
+    tiers: &mut Tiers,
 ) -> L::Mask {
     l.vectorize(inlined!(|| {
         let Shadow {
@@ -483,14 +483,14 @@ pub fn occluded<L: Lanes>(
         let mut blocks = Blocks::new(l, *limit, *except);
         match &model.hierarchy {
             None => list::blocks(&query, *except, &mut blocks),
-            Some(many) => many::blocks(&query, many, &mut blocks, &mut rungs.implicit),
+            Some(many) => many::blocks(&query, many, &mut blocks, &mut tiers.implicit),
         }
         let unsure = active & blocks.doubtful & !blocks.blocked;
         let mut answers = 0;
         query.resolve(
             unsure,
             *limit,
-            rungs,
+            tiers,
             #[inline(always)]
             |i, doubt, tally| {
                 // The limit is a rounded distance: a few units in its last place are its own noise.
@@ -503,7 +503,7 @@ pub fn occluded<L: Lanes>(
         blocks.blocked = blocks.blocked | l.mask_from_bits(answers);
         if model.hierarchy.is_none() {
             for (object, implicit) in model.implicits.iter().filter(|(k, _)| model.hides(*k)) {
-                blocks.ask_field(&query, (*object, implicit), &mut rungs.implicit);
+                blocks.ask_field(&query, (*object, implicit), &mut tiers.implicit);
             }
         }
         blocks.blocked

@@ -34,7 +34,7 @@ impl Approximation for Pair {
     /// underflow's reach.
     const SMALL: f64 = 1e-260;
     /// |hi + lo| ≥ |hi| (1 − u): half is a cheap lower bound that never decides wrongly. Only near
-    /// the bound would hi and lo have to be taken together; there the next rung decides.
+    /// the bound would hi and lo have to be taken together; there the next tier decides.
     const LEAST: f64 = 0.5;
     /// |hi + lo| ≤ |hi| (1 + u): this covers that and the products of errors.
     const PRODUCT: f64 = INFLATION;

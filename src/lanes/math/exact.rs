@@ -1,4 +1,4 @@
-//! Exact dyadic numbers, mantissa · 2^exponent with integers of any size: the last rung.
+//! Exact dyadic numbers, mantissa · 2^exponent with integers of any size: the last tier.
 
 use std::cmp::Ordering;
 

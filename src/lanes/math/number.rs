@@ -1,4 +1,4 @@
-//! Numbers with a bound of their own error: one interface for every rung of the ladder
+//! Numbers with a bound of their own error: one interface for every tier of the ladder
 //! f64 → double-double → exact, so that a predicate is written once.
 
 use std::cmp::Ordering;
@@ -19,7 +19,7 @@ pub trait Number: Clone {
     fn negated(&self) -> Self;
     /// Sign of the true value: `Equal` is zero, `None` is undecided.
     fn sign(&self) -> Option<Ordering>;
-    /// self / other. For values, never for decisions: on the exact rung it is truncated to
+    /// self / other. For values, never for decisions: on the exact tier it is truncated to
     /// [`exact::VALUE_BITS`](super::exact::VALUE_BITS).
     fn divided_by(&self, other: &Self) -> Self;
     /// √self, of a number that is ≥ 0. For values, never for decisions.
