@@ -151,8 +151,9 @@ pub fn own<'a>(
     let samples = images.clone().map(|image| image.spp).max().unwrap_or(1);
     let depths = images.clone().map(|image| image.max_depth);
     let sampler = match images.next().map(|image| image.sampler) {
-        Some(SamplerKind::Center) => "center",
-        _ => "sobol",
+        // Paths through the pixels' centres make another picture.
+        Some(centred) if centred.is_centred() => centred.name(),
+        _ => SamplerKind::Sobol.name(),
     };
     let image = |key: &str, value: String| (format!("image.{key}"), value);
     let mut overrides = subject.overrides.clone();

@@ -16,6 +16,7 @@ use super::work::Work;
 use crate::chart::{Key, Row};
 use crate::film::{hash, whole};
 use crate::render::memory;
+use crate::scene::SamplerKind;
 
 /// A study to be carried out.
 #[derive(Debug, Clone)]
@@ -131,7 +132,10 @@ fn axes(request: &Request, base: &Ready) -> Result<Vec<Axis>, StudyError> {
         });
     }
     let mixes_centres = |axis: &Axis| {
-        let is_centre = |value: &String| value == "center";
+        let is_centre = |value: &String| {
+            let mut kinds = SamplerKind::ALL.iter();
+            kinds.any(|kind| kind.is_centred() && kind.name() == value)
+        };
         axis.values.iter().any(is_centre) && !axis.values.iter().all(is_centre)
     };
     let mut samplers = axes.iter().filter(|axis| axis.key == Key::Sampler);

@@ -66,13 +66,18 @@ pub mod flags {
     pub const BEYOND: u32 = 8;
 }
 
+/// Columns on the borders of cache lines, which packets then do not cross.
+#[derive(Debug)]
+#[repr(align(64))]
+struct Columns<T, const N: usize>([[T; PLACES]; N]);
+
 /// Paths in flight, their numbers by column.
 #[derive(Debug)]
 pub struct Pool<T> {
     /// Number of paths.
     pub length: usize,
-    reals: Box<[[T; PLACES]; REALS]>,
-    ints: Box<[[u32; PLACES]; INTS]>,
+    reals: Box<Columns<T, REALS>>,
+    ints: Box<Columns<u32, INTS>>,
 }
 
 /// A path's values at its wavelengths, which are wanted together.
@@ -144,8 +149,8 @@ impl<T: Scalar> Default for Pool<T> {
     fn default() -> Self {
         Self {
             length: 0,
-            reals: Box::new([[T::default(); PLACES]; REALS]),
-            ints: Box::new([[0; PLACES]; INTS]),
+            reals: Box::new(Columns([[T::default(); PLACES]; REALS])),
+            ints: Box::new(Columns([[0; PLACES]; INTS])),
         }
     }
 }
@@ -154,8 +159,8 @@ impl<T: Scalar> Pool<T> {
     /// The packet at `at`, and the lanes in which it holds paths.
     #[inline(always)]
     pub fn read<L: Lanes<Scalar = T>>(&self, l: L, at: usize) -> (Paths<L>, L::Mask) {
-        let real = inlined!(|i: usize| l.load(&self.reals[i][at..]));
-        let int = inlined!(|i: usize| l.load_int(&self.ints[i][at..]));
+        let real = inlined!(|i: usize| l.load(&self.reals.0[i][at..]));
+        let int = inlined!(|i: usize| l.load_int(&self.ints.0[i][at..]));
         let paths = Paths {
             origin: Vec3::new(real(0), real(1), real(2)),
             direction: Vec3::new(real(3), real(4), real(5)),
@@ -178,10 +183,10 @@ impl<T: Scalar> Pool<T> {
     #[inline(always)]
     pub fn write<L: Lanes<Scalar = T>>(&mut self, l: L, at: usize, paths: &Paths<L>) {
         let (reals, ints) = paths.numbers();
-        for (column, x) in self.reals.iter_mut().zip(reals) {
+        for (column, x) in self.reals.0.iter_mut().zip(reals) {
             l.store(x, &mut column[at..]);
         }
-        for (column, x) in self.ints.iter_mut().zip(ints) {
+        for (column, x) in self.ints.0.iter_mut().zip(ints) {
             l.store_int(x, &mut column[at..]);
         }
     }
@@ -191,10 +196,10 @@ impl<T: Scalar> Pool<T> {
     #[inline(always)]
     pub fn keep<L: Lanes<Scalar = T>>(&mut self, l: L, at: usize, paths: &Paths<L>, keep: L::Mask) {
         let (reals, ints) = paths.numbers();
-        for (column, x) in self.reals.iter_mut().zip(reals) {
+        for (column, x) in self.reals.0.iter_mut().zip(reals) {
             l.compress_into(x, keep, &mut column[at..]);
         }
-        for (column, x) in self.ints.iter_mut().zip(ints) {
+        for (column, x) in self.ints.0.iter_mut().zip(ints) {
             l.compress_int_into(x, keep, &mut column[at..]);
         }
     }
